@@ -1,0 +1,189 @@
+//! The command line.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Parser, ValueEnum};
+use vrduino_emulator::board::Board;
+use vrduino_emulator::time::{self, Ticks};
+
+/// Boots the tracker's image on an emulated VRduino board and prints what it streams.
+///
+/// The stream goes to standard output and to a pseudo-terminal whose path is printed; everything else goes to
+/// standard error. Without --image the tracker is built first. Without --motion a head moves: still for three seconds,
+/// then yaw, pitch and roll. The world is y-up: recordings in a z-up world (x east, y north, z up) are turned to
+/// (x, z, -y); the sensor's axes are fed as they were recorded.
+#[derive(Parser, Debug)]
+#[command(name = "cargo emulate", version)]
+pub struct Arguments {
+    /// Seconds of emulated time to run; else until the motion ends, or Ctrl-C
+    #[arg(long, value_name = "N", value_parser = positive)]
+    pub seconds: Option<f64>,
+
+    /// What moves the sensor: an .imub recording, a CSV file with the columns t,gx,gy,gz,ax,ay,az (s, rad/s, m/s²), or
+    /// the course's six-column rows at 2 ms (°/s, m/s²)
+    #[arg(long, value_name = "FILE")]
+    pub motion: Option<PathBuf>,
+
+    /// Begin the motion here, in seconds
+    #[arg(long, value_name = "S", default_value = "0", value_parser = positive)]
+    pub start: f64,
+
+    /// An image to boot instead of the tracker's: ELF or Intel HEX
+    #[arg(long, value_name = "FILE")]
+    pub image: Option<PathBuf>,
+
+    /// Run no faster than real time; also done while something reads the pseudo-terminal
+    #[arg(long)]
+    pub realtime: bool,
+
+    /// Type these keys on the serial port, e.g. 2@3.5 for the key 2 at 3.5 s; may be given more than once
+    #[arg(long = "type", value_name = "KEYS@S")]
+    pub typed: Vec<Typed>,
+
+    /// Break something, from S on (else from the start) and until T (else for good); may be given more than once
+    #[arg(long, value_name = "FAULT[@S[-T]]", help = FAULT_HELP)]
+    pub fault: Vec<Fault>,
+
+    /// The sensor's WHO_AM_I
+    #[arg(long, value_name = "BYTE", default_value = "0x71", value_parser = byte)]
+    pub who_am_i: u8,
+
+    /// Error of the sensor's own oscillator in percent; the data sheet allows 1
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        default_value = "0",
+        allow_negative_numbers = true
+    )]
+    pub sensor_clock: f64,
+}
+
+const FAULT_HELP: &str = "Break something, from S on (else from the start) and until T (else for good): absent (no sensor \
+                          answers), frozen (no new samples), brown-out (the sensor loses its settings), stuck-sda (held \
+                          until it is clocked free), stuck-scl, unread (nobody reads the port), unplugged; may be given \
+                          more than once";
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 && value < 1e9 => Ok(value),
+        _ => Err("give a number of seconds, such as 10 or 2.5".into()),
+    }
+}
+
+fn byte(text: &str) -> Result<u8, String> {
+    let digits = text.strip_prefix("0x").unwrap_or(text);
+    u8::from_str_radix(digits, 16).map_err(|_| "give a byte in hexadecimal, such as 0x71".into())
+}
+
+/// Keys to type, and when.
+#[derive(Debug, Clone)]
+pub struct Typed {
+    keys: String,
+    at: Ticks,
+}
+
+impl FromStr for Typed {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Typed, String> {
+        let (keys, at) = text
+            .rsplit_once('@')
+            .ok_or("give keys and a time, such as 2@3.5")?;
+        Ok(Typed {
+            keys: keys.into(),
+            at: time::ticks(positive(at)?),
+        })
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    Absent,
+    Frozen,
+    BrownOut,
+    StuckSda,
+    StuckScl,
+    Unread,
+    Unplugged,
+}
+
+/// Something broken for a while.
+#[derive(Debug, Clone)]
+pub struct Fault {
+    kind: Kind,
+    from: Ticks,
+    until: Ticks,
+}
+
+impl FromStr for Fault {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Fault, String> {
+        let (kind, span) = text
+            .split_once('@')
+            .map_or((text, None), |(kind, span)| (kind, Some(span)));
+        let (from, until) = match span.map(|span| {
+            span.split_once('-')
+                .map_or((span, None), |(s, t)| (s, Some(t)))
+        }) {
+            None => (0.0, None),
+            Some((from, until)) => (positive(from)?, until.map(positive).transpose()?),
+        };
+        Ok(Fault {
+            kind: Kind::from_str(kind, true)
+                .map_err(|_| "give one of absent, frozen, brown-out, stuck-sda, stuck-scl, unread, unplugged")?,
+            from: time::ticks(from),
+            until: until.map_or(Ticks::MAX, time::ticks),
+        })
+    }
+}
+
+/// What is to be done to the board, in time.
+pub struct Script {
+    typed: Vec<Typed>,
+    /// Each fault, and whether it is on.
+    faults: Vec<(Fault, bool)>,
+}
+
+impl Arguments {
+    /// Keys and faults as a script.
+    pub fn script(&self) -> Script {
+        Script {
+            typed: self.typed.clone(),
+            faults: self
+                .fault
+                .iter()
+                .map(|fault| (fault.clone(), false))
+                .collect(),
+        }
+    }
+}
+
+impl Script {
+    /// Does what is due.
+    pub fn apply(&mut self, board: &mut Board) {
+        let now = board.now();
+        for typed in self.typed.extract_if(.., |typed| typed.at <= now) {
+            board.chip().host.send(typed.keys.as_bytes());
+        }
+        for (fault, on) in &mut self.faults {
+            let due = (fault.from..fault.until).contains(&now);
+            if due == *on {
+                continue;
+            }
+            *on = due;
+            let mut chip = board.chip();
+            match fault.kind {
+                Kind::Absent => chip.sensor.faults.absent = due,
+                Kind::Frozen => chip.sensor.faults.frozen = due,
+                Kind::BrownOut if due => chip.sensor.brown_out(now),
+                Kind::BrownOut => {}
+                Kind::StuckSda => chip.pins.sda_held_for = if due { 5 } else { 0 },
+                Kind::StuckScl => chip.pins.scl_held = due,
+                Kind::Unread => chip.host.set_reading(!due),
+                Kind::Unplugged => chip.host.set_plugged(!due),
+            }
+        }
+    }
+}

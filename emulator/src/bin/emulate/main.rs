@@ -1,0 +1,155 @@
+//! `cargo emulate`: boots the tracker's image on the emulated board and prints what it streams.
+
+mod arguments;
+
+mod port;
+
+mod report;
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use clap::Parser;
+use vrduino_emulator::board::{Board, Setup};
+use vrduino_emulator::firmware;
+use vrduino_emulator::image::Image;
+use vrduino_emulator::motion::{self, Motion};
+use vrduino_emulator::time::{self, MILLISECOND, Ticks};
+
+use arguments::Arguments;
+use port::PseudoTerminal;
+use report::Report;
+
+type Error = Box<dyn std::error::Error>;
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Error> {
+    // What the user has given is looked at first: no point in building before a wrong file name.
+    let (motion, description, ends) = choose_motion(arguments)?;
+    let path = match &arguments.image {
+        Some(path) => path.clone(),
+        None => firmware::build(firmware::BuildOptions { quiet: true })?,
+    };
+    let image = Image::open(&path)?;
+    let setup = Setup {
+        motion,
+        who_am_i: arguments.who_am_i,
+        sensor_clock_error: arguments.sensor_clock / 100.0,
+    };
+    let mut board = Board::new(image, setup);
+    let terminal = PseudoTerminal::open()?;
+    eprintln!("image   {}", path.display());
+    eprintln!("motion  {description}");
+    if let Some(path) = terminal.path() {
+        eprintln!("port    {path}");
+    }
+    let limit = arguments.seconds.or(ends).map(time::ticks);
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupted);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
+
+    let mut session = Session {
+        terminal,
+        report: Report::new(),
+        realtime: arguments.realtime,
+        paced_since: None,
+    };
+    let mut script = arguments.script();
+    while limit.is_none_or(|limit| board.now() < limit) && !interrupted.load(Ordering::Relaxed) {
+        script.apply(&mut board);
+        board.run(MILLISECOND.min(limit.map_or(MILLISECOND, |limit| limit - board.now())));
+        match session.pass_on(&mut board) {
+            // Whoever read our output has seen enough.
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
+            result => result?,
+        }
+    }
+    session.report.print(&mut board);
+    Ok(())
+}
+
+/// The motion, what to call it, and when it ends by itself.
+fn choose_motion(arguments: &Arguments) -> Result<(Box<dyn Motion>, String, Option<f64>), Error> {
+    let motion: Box<dyn Motion> = match &arguments.motion {
+        Some(path) => motion::open(path)?,
+        None => motion::built_in(),
+    };
+    let description = motion.describe();
+    let motion = motion::skip(motion, arguments.start)?;
+    let ends = motion.duration();
+    Ok((motion, description, ends))
+}
+
+/// The PC's side: where the stream goes and how fast.
+struct Session {
+    terminal: PseudoTerminal,
+    report: Report,
+    realtime: bool,
+    /// Wall and emulated time from which on the run is held to real time.
+    paced_since: Option<(Instant, Ticks)>,
+}
+
+impl Session {
+    fn pass_on(&mut self, board: &mut Board) -> io::Result<()> {
+        for event in board.take_events() {
+            eprintln!("{event}");
+        }
+        let attached = self.terminal.is_attached();
+        let received = {
+            let mut chip = board.chip_quietly();
+            let keys = self.terminal.read();
+            if !keys.is_empty() {
+                chip.host.send(&keys);
+            }
+            if self.terminal.is_full() != self.terminal.was_full {
+                // A reader that falls behind holds the host back, and the host the board.
+                self.terminal.was_full = self.terminal.is_full();
+                chip.host.set_reading(!self.terminal.was_full);
+            }
+            chip.host.take_received()
+        };
+        if !received.is_empty() {
+            self.report.take_in(board.now(), &received);
+            if attached {
+                self.terminal.write(&received);
+            }
+            let mut stdout = io::stdout().lock();
+            stdout.write_all(&received)?;
+            stdout.flush()?;
+        }
+        self.terminal.flush();
+        self.pace(attached || self.realtime, board.now());
+        Ok(())
+    }
+
+    /// Waits until real time has caught up with emulated time, while somebody watches.
+    fn pace(&mut self, wanted: bool, now: Ticks) {
+        if !wanted {
+            self.paced_since = None;
+            return;
+        }
+        let (wall, emulated) = *self
+            .paced_since
+            .get_or_insert_with(|| (Instant::now(), now));
+        let ahead =
+            Duration::from_secs_f64(time::seconds(now - emulated)).saturating_sub(wall.elapsed());
+        if ahead.is_zero() {
+            // Behind: do not make up for it later by running too fast.
+            self.paced_since = Some((Instant::now(), now));
+        } else {
+            std::thread::sleep(ahead);
+        }
+    }
+}

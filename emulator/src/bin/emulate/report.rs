@@ -1,0 +1,107 @@
+//! What is said at the end of a run.
+
+use std::time::Instant;
+
+use vrduino_emulator::board::Board;
+use vrduino_emulator::time::{self, Ticks};
+
+/// Counts the stream's lines.
+pub struct Report {
+    started: Instant,
+    lines: u64,
+    orientations: u64,
+    /// When the first orientation ended, and the last.
+    first: Option<Ticks>,
+    last: Ticks,
+    rest: Vec<u8>,
+}
+
+impl Report {
+    /// A run begins.
+    pub fn new() -> Report {
+        Report {
+            started: Instant::now(),
+            lines: 0,
+            orientations: 0,
+            first: None,
+            last: 0,
+            rest: Vec::new(),
+        }
+    }
+
+    /// Takes in a piece of the stream.
+    pub fn take_in(&mut self, now: Ticks, bytes: &[u8]) {
+        for &byte in bytes {
+            if byte != b'\n' {
+                // Enough to tell what a line is; a stream without line ends must not grow without end.
+                if self.rest.len() < 8 {
+                    self.rest.push(byte);
+                }
+                continue;
+            }
+            self.lines += 1;
+            if self.rest.starts_with(b"QC ") {
+                self.orientations += 1;
+                self.first.get_or_insert(now);
+                self.last = now;
+            }
+            self.rest.clear();
+        }
+    }
+
+    /// Prints it to standard error.
+    pub fn print(&self, board: &mut Board) {
+        let (emulated, wall) = (
+            time::seconds(board.now()),
+            self.started.elapsed().as_secs_f64(),
+        );
+        eprintln!(
+            "ran     {emulated:.3} s in {wall:.1} s, {:.2} times real time",
+            emulated / wall.max(1e-9)
+        );
+        {
+            let chip = board.chip();
+            match chip.host.identity() {
+                Some(device) => eprintln!(
+                    "device  {} by {}, {:04x}:{:04x}, serial number {}",
+                    device.product_name,
+                    device.manufacturer,
+                    device.vendor,
+                    device.product,
+                    device.serial_number
+                ),
+                None => eprintln!("device  none: the image did not bring up its USB port"),
+            }
+            for complaint in chip.host.complaints.iter().chain(&chip.usb.complaints) {
+                eprintln!("usb     {complaint}");
+            }
+        }
+        match self.first {
+            Some(first) => {
+                let span = time::seconds(self.last - first);
+                let rate = if span > 0.0 {
+                    (self.orientations - 1) as f64 / span
+                } else {
+                    0.0
+                };
+                eprintln!(
+                    "lines   {}, of these {} QC: the first at {:.3} s, then {rate:.1} in a second",
+                    self.lines,
+                    self.orientations,
+                    time::seconds(first)
+                );
+            }
+            None => eprintln!("lines   {}, none of them QC", self.lines),
+        }
+        match board.variable("usb::DROPPED_LINES") {
+            Some(count) => eprintln!("dropped {count} lines, for want of a reader"),
+            None => eprintln!("dropped unknown: the image has no counter that the emulator knows"),
+        }
+        eprintln!("resets  {}", board.resets());
+        eprintln!(
+            "cpu     {:.1} % busy, {:.1} million instructions a second",
+            100.0 * board.awake_for() as f64 / board.now().max(1) as f64,
+            board.instructions() as f64 / emulated.max(1e-9) / 1e6
+        );
+    }
+}

@@ -1,0 +1,269 @@
+//! The processor: a Cortex-M4 without FPU or MPU, executed by `rsemu` behind this module's own interface.
+//!
+//! `rsemu` is young (0.0.x), so nothing outside this file knows it.
+
+use std::sync::Arc;
+
+use rsemu::core::error::BusError;
+use rsemu::core::space::{
+    AccessConstraints, AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite,
+};
+use rsemu::core::value::{Endian, Width};
+use rsemu::cpu::arm::v7m::{ArmV7m, Config};
+
+/// Where the 64 KiB of SRAM begin; they end at 0x2000_8000 (K20 manual, "Memory map").
+pub const RAM_BASE: u32 = 0x1FFF_8000;
+
+/// Bytes of SRAM.
+pub const RAM_SIZE: u32 = 64 * 1024;
+
+/// Bytes of program flash, from address 0.
+pub const FLASH_SIZE: u32 = 256 * 1024;
+
+const PERIPHERALS_BASE: u32 = 0x4000_0000;
+const PERIPHERALS_SIZE: u32 = 0x0010_0000;
+const FLEXRAM_BASE: u32 = 0x1400_0000;
+const FLEXRAM_SIZE: u64 = 2 * 1024;
+
+/// What answers the processor's accesses to the peripheral bridges.
+pub trait PeripheralBus: Send + Sync + std::fmt::Debug {
+    /// Reads `width` bytes; `None` is a bus error.
+    fn read(&self, address: u32, width: u8) -> Option<u32>;
+    /// Writes `width` bytes; `false` is a bus error.
+    fn write(&self, address: u32, width: u8, value: u32) -> bool;
+}
+
+/// The chip's SRAM, which outlives every reset and which USB reads and writes on its own.
+#[derive(Debug, Clone)]
+pub struct Ram(Arc<RamStore>);
+
+impl Ram {
+    /// SRAM as it is after power-on: not zero, so that firmware which relies on zeroed memory is found out.
+    pub fn new() -> Ram {
+        let store = RamStore::new(u64::from(RAM_SIZE));
+        // The pattern differs from byte to byte; any fixed one will do.
+        for offset in 0..u64::from(RAM_SIZE) {
+            let _ = store.write_u8(offset, (offset as u8).wrapping_mul(167) ^ 0xA5);
+        }
+        Ram(Arc::new(store))
+    }
+
+    /// Reads the 32-bit word at `address`; `None` outside the SRAM.
+    pub fn word(&self, address: u32) -> Option<u32> {
+        let offset = u64::from(address.checked_sub(RAM_BASE)?);
+        self.0
+            .read_value(offset, Width::U32, Endian::Little)
+            .ok()
+            .map(|v| v as u32)
+    }
+
+    /// Writes the 32-bit word at `address`; `false` outside the SRAM.
+    pub fn set_word(&self, address: u32, value: u32) -> bool {
+        address.checked_sub(RAM_BASE).is_some_and(|offset| {
+            self.0
+                .write_value(
+                    u64::from(offset),
+                    Width::U32,
+                    u64::from(value),
+                    Endian::Little,
+                )
+                .is_ok()
+        })
+    }
+
+    /// Reads bytes from `address` on; `None` if any lies outside the SRAM.
+    pub fn bytes(&self, address: u32, length: usize) -> Option<Vec<u8>> {
+        let offset = u64::from(address.checked_sub(RAM_BASE)?);
+        let mut bytes = vec![0; length];
+        self.0.read_at(offset, &mut bytes).ok()?;
+        Some(bytes)
+    }
+
+    /// Writes bytes from `address` on; `false` if any would lie outside the SRAM.
+    pub fn set_bytes(&self, address: u32, bytes: &[u8]) -> bool {
+        address
+            .checked_sub(RAM_BASE)
+            .is_some_and(|offset| self.0.write_at(u64::from(offset), bytes).is_ok())
+    }
+}
+
+impl Default for Ram {
+    fn default() -> Ram {
+        Ram::new()
+    }
+}
+
+/// The processor with its memories.
+#[derive(Debug)]
+pub struct Cpu {
+    core: ArmV7m,
+    space: Arc<AddressSpace>,
+}
+
+impl Cpu {
+    /// A processor about to leave reset, with `flash` at address 0.
+    pub fn new(flash: &[u8], ram: &Ram, peripherals: Arc<dyn PeripheralBus>) -> Cpu {
+        let space = AddressSpace::new("K20", 32);
+        {
+            let mut map = space.topology();
+            let rom = Arc::new(RomStore::from_slice(flash));
+            let regions = [
+                (0, Region::rom("flash", rom, RomWrite::Fault)),
+                (RAM_BASE, Region::ram("sram", Arc::clone(&ram.0))),
+                (
+                    FLEXRAM_BASE,
+                    Region::ram("flexram", Arc::new(RamStore::new(FLEXRAM_SIZE))),
+                ),
+                (
+                    PERIPHERALS_BASE,
+                    Region::io(
+                        "peripherals",
+                        u64::from(PERIPHERALS_SIZE),
+                        Arc::new(Bridge(peripherals)),
+                    ),
+                ),
+            ];
+            for (base, region) in regions {
+                map.map(region, u64::from(base))
+                    .expect("the chip's regions do not overlap");
+            }
+        }
+        let space = Arc::new(space);
+        Cpu {
+            core: Cpu::core(&space),
+            space,
+        }
+    }
+
+    fn core(space: &Arc<AddressSpace>) -> ArmV7m {
+        // MK20DX256: sixteen interrupt priorities, no memory protection unit.
+        let mut config = Config::CORTEX_M4.with_priority_bits(4);
+        config.ext.mpu = false;
+        let core = ArmV7m::new(config);
+        core.attach_space(Arc::clone(space));
+        core
+    }
+
+    /// A system reset: everything in the core returns to its reset state; memories keep their contents.
+    pub fn reset(&mut self) {
+        self.core = Cpu::core(&self.space);
+    }
+
+    /// Executes one instruction, exception entry or idle cycle; returns the processor cycles it took.
+    pub fn step(&self) -> u64 {
+        self.core.step()
+    }
+
+    /// Whether the core sleeps in WFI or WFE.
+    pub fn is_asleep(&self) -> bool {
+        self.core.is_asleep()
+    }
+
+    /// Whether a fault within a fault has stopped the core for good.
+    pub fn is_locked_up(&self) -> bool {
+        self.core.is_locked_up()
+    }
+
+    /// Whether the program asked for a system reset (AIRCR.SYSRESETREQ).
+    pub fn wants_reset(&self) -> bool {
+        self.core.reset_requested()
+    }
+
+    /// Drives interrupt input `irq`.
+    pub fn set_irq(&self, irq: u16, asserted: bool) {
+        self.core.set_irq(irq, asserted);
+    }
+
+    /// Cycles until SysTick would pend its exception; `None` if it never will.
+    pub fn cycles_to_systick(&self) -> Option<u64> {
+        self.core.with_sys(|sys| {
+            let (enabled, interrupt) = (sys.syst_csr & 1 != 0, sys.syst_csr & 2 != 0);
+            (enabled && interrupt && sys.syst_rvr != 0).then(|| match sys.syst_cvr {
+                0 => u64::from(sys.syst_rvr) + 1,
+                count => u64::from(count),
+            })
+        })
+    }
+
+    /// Lets `cycles` pass in sleep: SysTick counts on, DWT_CYCCNT does not (its clock is gated by WFI).
+    pub fn sleep(&self, cycles: u64) {
+        const SYSTICK: rsemu::cpu::arm::v7m::sys::Exception =
+            rsemu::cpu::arm::v7m::sys::Exception::SYSTICK;
+        self.core.with_sys(|sys| {
+            if sys.tick_systick(cycles) && sys.syst_csr & 2 != 0 {
+                sys.set_pending(SYSTICK, true);
+            }
+        });
+    }
+
+    /// The program counter.
+    pub fn pc(&self) -> u32 {
+        self.core.pc()
+    }
+
+    /// Continues at `address`: how a test makes the program hang or panic where it likes.
+    pub fn set_pc(&self, address: u32) {
+        self.core.set_pc(address);
+    }
+
+    /// The main stack pointer.
+    pub fn stack_pointer(&self) -> u32 {
+        self.core.msp()
+    }
+
+    /// Number of the exception being handled; 0 in thread mode, 3 in HardFault, 16 + n in interrupt n.
+    pub fn exception(&self) -> u16 {
+        self.core.current_exception().0
+    }
+
+    /// Reads a 16-bit halfword as a debugger would, without side effects.
+    pub fn halfword(&self, address: u32) -> Option<u16> {
+        self.space
+            .read(u64::from(address), Width::U16, MemAttrs::DEBUG)
+            .ok()
+            .map(|v| v as u16)
+    }
+}
+
+/// Adapts [`PeripheralBus`] to the engine's idea of a memory-mapped device.
+#[derive(Debug)]
+struct Bridge(Arc<dyn PeripheralBus>);
+
+impl MemOps for Bridge {
+    fn read(&self, offset: u64, dst: &mut [u8], attrs: MemAttrs) -> Result<(), BusError> {
+        if attrs.debug {
+            dst.fill(0);
+            return Ok(());
+        }
+        let value = self
+            .0
+            .read(PERIPHERALS_BASE + offset as u32, dst.len() as u8)
+            .ok_or(BusError::BadAccess)?;
+        dst.copy_from_slice(&value.to_le_bytes()[..dst.len()]);
+        Ok(())
+    }
+
+    fn write(&self, offset: u64, src: &[u8], attrs: MemAttrs) -> Result<(), BusError> {
+        if attrs.debug {
+            return Ok(());
+        }
+        let mut bytes = [0; 4];
+        bytes[..src.len()].copy_from_slice(src);
+        let accepted = self.0.write(
+            PERIPHERALS_BASE + offset as u32,
+            src.len() as u8,
+            u32::from_le_bytes(bytes),
+        );
+        if accepted {
+            Ok(())
+        } else {
+            Err(BusError::BadAccess)
+        }
+    }
+
+    fn constraints(&self) -> AccessConstraints {
+        AccessConstraints::IO
+            .with_widths(Width::U8, Width::U32)
+            .with_natural_alignment(true)
+    }
+}

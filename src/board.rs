@@ -1,0 +1,169 @@
+//! The VRduino board: everything that knows the chip.
+//!
+//! Priorities, most urgent first: sampling (PIT0 and I2C0, which never interrupt one another), USB,
+//! and the main program.
+
+#![allow(
+    unsafe_code,
+    reason = "registers; each block states the one fact it relies on"
+)]
+
+pub mod breadcrumb;
+
+pub mod clock;
+
+pub mod i2c;
+
+pub mod imu;
+
+pub mod led;
+
+pub mod usb;
+
+pub mod watchdog;
+
+use core::fmt::{self, Write};
+
+use cortex_m::peripheral::NVIC;
+use mk20dx_hal::pac;
+use vrduino::sensor::RawSample;
+use vrduino::tracker::Health;
+use vrduino::wire::{self, Line};
+
+use breadcrumb::Stage;
+use clock::Time;
+use imu::Imu;
+use led::Led;
+use usb::Usb;
+use watchdog::Watchdog;
+
+pub use imu::Fault;
+
+/// The parts of the board, ready for use.
+pub struct Board {
+    /// The serial port.
+    pub usb: Usb,
+    imu: Imu,
+    led: Led,
+    time: Time,
+    watchdog: Watchdog,
+    last_life: Option<breadcrumb::LastLife>,
+    fault: Option<Fault>,
+}
+
+impl Board {
+    /// Brings the board up. To be called once, first thing.
+    pub fn take() -> Board {
+        let core = cortex_m::Peripherals::take().expect("the board is taken once");
+        let chip = pac::Peripherals::take().expect("the board is taken once");
+        let last_life = breadcrumb::LastLife::read(&chip.rcm);
+        breadcrumb::mark(Stage::Clocks);
+        let clocks = clock::start(core.DCB, core.DWT, chip.mcg, chip.osc, &chip.sim);
+        let led = Led::new(chip.portc, chip.ptc, &chip.sim);
+        breadcrumb::mark(Stage::UsbStart);
+        let usb = Usb::new(chip.usb0, &chip.sim);
+        let imu = Imu::new(
+            chip.i2c0, chip.portb, chip.ptb, chip.pit, &chip.sim, &clocks,
+        );
+        let mut board = Board {
+            usb,
+            imu,
+            led,
+            time: Time,
+            watchdog: Watchdog::new(chip.wdog),
+            last_life,
+            fault: None,
+        };
+        board.introduce();
+        board
+    }
+
+    /// Finds the sensor, sets it up and starts sampling.
+    pub fn start_imu(&mut self) -> Result<(), Fault> {
+        breadcrumb::mark(Stage::ImuStart);
+        self.imu.start(&mut self.time, &mut self.watchdog)?;
+        if self.fault.take().is_some() {
+            self.usb.send(&wire::text("the IMU answers again"));
+        }
+        Ok(())
+    }
+
+    /// Sleeps until the next millisecond's sample is there.
+    ///
+    /// A burst that failed is bridged by the sample before it, marked as not fresh; a sensor that
+    /// fails for longer is a fault.
+    pub fn next_sample(&mut self) -> Result<RawSample, Fault> {
+        breadcrumb::mark(Stage::Sampling);
+        self.imu.next_sample()
+    }
+
+    /// Counters for the INFO lines.
+    pub fn health(&self) -> Health {
+        Health {
+            dropped_lines: usb::dropped_lines(),
+            overruns: self.imu.overruns(),
+        }
+    }
+
+    /// Ends a turn of the main loop that went well.
+    pub fn end_of_turn(&mut self) {
+        self.watchdog.feed();
+        self.led.heartbeat(clock::milliseconds());
+        if self.usb.was_opened() {
+            self.introduce();
+        }
+    }
+
+    /// Tells the host what is wrong.
+    pub fn report(&mut self, fault: Fault) {
+        self.usb.send(&message(format_args!("error: {fault}")));
+        self.fault = Some(fault);
+    }
+
+    /// Lets `ms` milliseconds pass without a sensor, showing so on the LED.
+    pub fn wait(&mut self, ms: u32) {
+        breadcrumb::mark(Stage::Waiting);
+        let until = clock::milliseconds().wrapping_add(ms);
+        while until.wrapping_sub(clock::milliseconds()) as i32 > 0 {
+            self.time.sleep_for_a_tick();
+            self.watchdog.feed();
+            self.led.distress(clock::milliseconds());
+            // Keys mean nothing without a sensor; they must not pile up either.
+            while self.usb.command().is_some() {}
+            if self.usb.was_opened() {
+                self.introduce();
+                if let Some(fault) = self.fault {
+                    self.report(fault);
+                }
+            }
+        }
+    }
+
+    /// Says who is speaking, and how the program before this one ended if that was not by power.
+    fn introduce(&mut self) {
+        self.usb
+            .send(&wire::text(concat!("vrduino ", env!("CARGO_PKG_VERSION"))));
+        if let Some(last_life) = self.last_life {
+            self.usb
+                .send(&message(format_args!("warning: {last_life}")));
+        }
+    }
+}
+
+/// A line of text; what does not fit is cut off.
+fn message(arguments: fmt::Arguments) -> Line {
+    let mut text = heapless::String::<160>::new();
+    // An overlong message is worth more cut short than not at all.
+    let _ = text.write_fmt(arguments);
+    wire::text(&text)
+}
+
+/// Lets `interrupt` through with `priority`, of which the upper four bits count.
+fn enable_interrupt(interrupt: pac::Interrupt, priority: u8) {
+    // SAFETY: Board::take holds the core's peripherals, and nobody else touches the NVIC.
+    let mut nvic = unsafe { cortex_m::Peripherals::steal() }.NVIC;
+    // SAFETY: called before the interrupt is enabled, so no critical section depends on its priority.
+    unsafe { nvic.set_priority(interrupt, priority) };
+    // SAFETY: the caller has put the handler's state in place.
+    unsafe { NVIC::unmask(interrupt) };
+}

@@ -1,0 +1,149 @@
+//! What was running when the watchdog bit.
+//!
+//! A panic keeps no message (panic-halt) and a hang has none. So the program leaves a breadcrumb in
+//! RAM that start-up does not clear, and the next life reads it.
+
+use core::fmt;
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use cortex_m_rt::{ExceptionFrame, exception};
+use mk20dx_hal::pac;
+
+/// What the program is at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Stage {
+    /// Switching the clocks.
+    Clocks = 1,
+    /// Starting USB.
+    UsbStart,
+    /// Finding and setting up the sensor.
+    ImuStart,
+    /// Waiting for a sample.
+    Sampling,
+    /// Calibrating, filtering, writing lines.
+    Filter,
+    /// Waiting for a lost sensor.
+    Waiting,
+    /// In the USB interrupt.
+    UsbInterrupt,
+    /// In one of the sampling interrupts.
+    SamplingInterrupt,
+}
+
+impl Stage {
+    const ALL: [(Stage, &str); 8] = [
+        (Stage::Clocks, "switching clocks"),
+        (Stage::UsbStart, "starting USB"),
+        (Stage::ImuStart, "setting up the IMU"),
+        (Stage::Sampling, "waiting for a sample"),
+        (Stage::Filter, "in the filter"),
+        (Stage::Waiting, "waiting for the IMU"),
+        (Stage::UsbInterrupt, "in the USB interrupt"),
+        (Stage::SamplingInterrupt, "in the sampling interrupt"),
+    ];
+}
+
+/// Marks a word of this module's making, in the upper half; memory after power-on is random.
+const MAGIC: u32 = 0x4352_0000;
+/// Set where a hard fault was taken.
+const HARD_FAULT: u32 = 0x8000;
+
+/// The breadcrumb and its complement, which must agree to be believed.
+// SAFETY: `.uninit` is RAM that start-up leaves alone; any content is a valid AtomicU32.
+#[unsafe(link_section = ".uninit.breadcrumb")]
+static CRUMB: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
+
+fn store(word: u32) {
+    CRUMB[0].store(word, Ordering::Relaxed);
+    CRUMB[1].store(!word, Ordering::Relaxed);
+}
+
+fn load() -> Option<u32> {
+    let (word, complement) = (
+        CRUMB[0].load(Ordering::Relaxed),
+        CRUMB[1].load(Ordering::Relaxed),
+    );
+    (word == !complement && word & 0xFFFF_0000 == MAGIC).then_some(word & 0xFFFF)
+}
+
+/// Says what begins now.
+pub fn mark(stage: Stage) {
+    store(MAGIC | stage as u32);
+}
+
+/// Does `work` as `stage`, then goes back to what was at hand before: for interrupts.
+pub fn during<T>(stage: Stage, work: impl FnOnce() -> T) -> T {
+    let before = load();
+    mark(stage);
+    let result = work();
+    if let Some(before) = before {
+        store(MAGIC | before);
+    }
+    result
+}
+
+/// A fault of the core stops the program where it is; the watchdog does the rest.
+#[exception]
+unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
+    store(MAGIC | HARD_FAULT | load().unwrap_or(0));
+    loop {
+        cortex_m::asm::nop();
+    }
+}
+
+/// How the program before this one ended, if not by switching off.
+#[derive(Clone, Copy)]
+pub struct LastLife {
+    reset: &'static str,
+    hard_fault: bool,
+    stage: Option<&'static str>,
+}
+
+impl LastLife {
+    /// Reads the reset's cause and the breadcrumb. To be called before the first [`mark`].
+    pub fn read(reset_control: &pac::Rcm) -> Option<LastLife> {
+        // RCM_SRS0 and SRS1 (K20 manual, 15.2.1): pin and power-on resets are nothing to report.
+        let (srs0, srs1) = (
+            reset_control.srs0().read().bits(),
+            reset_control.srs1().read().bits(),
+        );
+        let reset = match (srs0, srs1) {
+            (srs0, _) if srs0 & 0x80 != 0 => return None,
+            (srs0, _) if srs0 & 0x20 != 0 => "watchdog",
+            (_, srs1) if srs1 & 0x02 != 0 => "lockup",
+            (_, srs1) if srs1 & 0x04 != 0 => "software",
+            _ => return None,
+        };
+        let crumb = load();
+        let stage = crumb.and_then(|crumb| {
+            let number = crumb & 0xFF;
+            Stage::ALL
+                .iter()
+                .find(|(stage, _)| *stage as u32 == number)
+                .map(|(_, name)| *name)
+        });
+        Some(LastLife {
+            reset,
+            hard_fault: crumb.is_some_and(|crumb| crumb & HARD_FAULT != 0),
+            stage,
+        })
+    }
+}
+
+impl fmt::Display for LastLife {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let fault = if self.hard_fault {
+            "after a hard fault "
+        } else {
+            ""
+        };
+        write!(
+            f,
+            "reset by {} {}while {}",
+            self.reset,
+            fault,
+            self.stage.unwrap_or("starting up")
+        )
+    }
+}

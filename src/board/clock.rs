@@ -1,0 +1,100 @@
+//! Clocks and time: 72 MHz core, 36 MHz bus, 24 MHz flash, and a count of milliseconds.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use cortex_m::peripheral::{DCB, DWT};
+use embedded_hal::delay::DelayNs;
+use mk20dx_hal::clocks::{Clocks, McgExt};
+use mk20dx_hal::pac;
+
+/// Core cycles in a microsecond.
+const CYCLES_PER_US: u32 = 72;
+
+static MILLISECONDS: AtomicU32 = AtomicU32::new(0);
+
+/// Milliseconds since start, by the sampling timer; wraps after 49 days.
+pub fn milliseconds() -> u32 {
+    MILLISECONDS.load(Ordering::Relaxed)
+}
+
+/// A millisecond has passed; called by the sampling timer's interrupt.
+pub(super) fn tick() {
+    // Only this interrupt writes, so load and store need not be one step.
+    MILLISECONDS.store(milliseconds().wrapping_add(1), Ordering::Relaxed);
+}
+
+/// Switches to the crystal and the PLL.
+///
+/// The HAL waits without a limit for each step; should one never come, the watchdog, which is already
+/// running, starts the chip anew.
+pub fn start(mut dcb: DCB, mut dwt: DWT, mcg: pac::Mcg, osc: pac::Osc, sim: &pac::Sim) -> Clocks {
+    let clocks = mcg.constrain().freeze(osc, sim);
+    dcb.enable_trace();
+    dwt.enable_cycle_counter();
+    clocks
+}
+
+/// A moment in the near future that bounds a wait.
+///
+/// Counts core cycles, which stop while the core sleeps: for busy waits only.
+#[derive(Clone, Copy)]
+pub struct Deadline {
+    start: u32,
+    cycles: u32,
+}
+
+impl Deadline {
+    /// `us` microseconds from now; at most 59 s.
+    pub fn in_us(us: u32) -> Deadline {
+        Deadline {
+            start: DWT::cycle_count(),
+            cycles: us * CYCLES_PER_US,
+        }
+    }
+
+    /// Whether that moment has come.
+    pub fn passed(self) -> bool {
+        DWT::cycle_count().wrapping_sub(self.start) >= self.cycles
+    }
+
+    /// Waits for it.
+    pub fn wait(self) {
+        while !self.passed() {}
+    }
+}
+
+/// Puts the core to sleep unless `ready`; the two are one step, so no wake-up is missed.
+pub fn sleep_unless(ready: impl FnOnce() -> bool) {
+    cortex_m::interrupt::free(|_| {
+        if !ready() {
+            // A pending interrupt ends WFI even while it is masked.
+            cortex_m::asm::wfi();
+        }
+    });
+}
+
+/// Waiting, once the millisecond timer runs.
+pub struct Time;
+
+impl Time {
+    /// Sleeps until the next millisecond.
+    pub fn sleep_for_a_tick(&mut self) {
+        let now = milliseconds();
+        while milliseconds() == now {
+            sleep_unless(|| milliseconds() != now);
+        }
+    }
+}
+
+impl DelayNs for Time {
+    fn delay_ns(&mut self, ns: u32) {
+        if ns >= 1_000_000 {
+            // One more, since the current millisecond has already begun.
+            for _ in 0..=ns.div_ceil(1_000_000) {
+                self.sleep_for_a_tick();
+            }
+        } else {
+            Deadline::in_us(ns.div_ceil(1000)).wait();
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! The program on the board: a sample every millisecond, an orientation to the host a hundred times
+//! a second.
+//!
+//! A timer starts each burst from the sensor and interrupts carry it in; the filter runs here, and
+//! here the core sleeps when there is nothing to do. USB has an interrupt of its own, below the
+//! sensor's and above the filter, so neither a slow host nor a busy filter delays a sample. The
+//! watchdog is fed only after a sample has come in and gone through the filter.
+
+#![no_std]
+#![no_main]
+#![deny(unsafe_code)]
+
+mod board;
+
+use core::convert::Infallible;
+
+use board::breadcrumb::{self, Stage};
+use board::{Board, Fault};
+use panic_halt as _; // a panic stops the core; the watchdog restarts it and the breadcrumb tells
+use vrduino::imu::RANGES;
+use vrduino::tracker::Tracker;
+
+/// How long to wait before looking for a lost sensor again.
+const RETRY_MS: u32 = 1000;
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    let mut board = Board::take();
+    let mut tracker = Tracker::new(RANGES);
+    loop {
+        let Err(fault) = track(&mut board, &mut tracker);
+        board.report(fault);
+        board.wait(RETRY_MS);
+    }
+}
+
+/// Tracks until the sensor is lost.
+///
+/// One turn a millisecond; a turn that comes late finds its sample in a queue and catches up.
+fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> {
+    board.start_imu()?;
+    tracker.resume();
+    loop {
+        let sample = board.next_sample()?;
+        while let Some(command) = board.usb.command() {
+            tracker.command(command);
+        }
+        breadcrumb::mark(Stage::Filter);
+        let health = board.health();
+        tracker.update(&sample, &health, &mut |line| board.usb.send(line));
+        board.end_of_turn();
+    }
+}

@@ -1,0 +1,301 @@
+//! [`Tracker::update`] is called once per [`SAMPLE_PERIOD`] with what the sensor sent, and does
+//! everything that follows: units, bias, filter, and every tenth time a line. The firmware and
+//! the tests run this same code.
+//!
+//! The timer is the time base, not the sensor. The sensor's own clock is a per cent or so off, so
+//! now and then a sample comes twice and now and then one is missed; a repeated one is integrated
+//! again (the rate is held for the sample that is not there) and counted.
+//!
+//! [`Tracker::update`]: crate::tracker::Tracker::update
+//! [`SAMPLE_PERIOD`]: crate::tracker::SAMPLE_PERIOD
+
+use crate::calibration::{GyroBias, Reading, Rest, Stillness, Verdict};
+use crate::command::{Command, Mode};
+use crate::orientation::complementary::Complementary;
+use crate::orientation::flatland::Flatland;
+use crate::orientation::gyro::DeadReckoning;
+use crate::orientation::{DEFAULT_TIME_CONSTANT, angles};
+use crate::sensor::{Ranges, RawSample, Sample};
+use crate::units::{Seconds, SpecificForce};
+use crate::wire::{self, Line, Tag};
+use nalgebra::UnitQuaternion;
+
+/// The sensor's own rate with its filter in use, 1 kHz.
+pub const SAMPLE_PERIOD: Seconds<f32> = Seconds(0.001);
+
+/// Samples per line: 100 lines a second. The course's Unity script reads 64 bytes per frame and
+/// falls behind by a second above about 128 lines a second.
+pub const LINE_EVERY: u32 = 10;
+
+/// Samples per INFO block: one second.
+const INFO_EVERY: u32 = 1000;
+
+/// Samples to wait for a still window: 5 s. Someone who is already wearing the board should see a
+/// picture, even a drifting one.
+pub const STILL_DEADLINE: u32 = 5000;
+
+/// What the board knows and the tracker does not. For the INFO block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Health {
+    /// Lines thrown away because the host did not read.
+    pub dropped_lines: u32,
+    /// Ticks of the timer that found the bus still busy with the last sample.
+    pub overruns: u32,
+}
+
+/// Everything between the sensor's counts and the lines to the host.
+#[derive(Clone, Debug)]
+pub struct Tracker {
+    ranges: Ranges,
+    mode: Mode,
+    bias: GyroBias<f32>,
+    /// The window the bias came from; none if it was never still.
+    rest: Option<Rest>,
+    measurement: Option<Measurement>,
+    fused: Complementary<f32>,
+    gyro: DeadReckoning<f32>,
+    flat: Flatland<f32>,
+    phase: Phase,
+    ticks: u32,
+    counts: Counts,
+}
+
+/// Whether there is an orientation, and what the next sample is to do to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// The first measurement of the bias is still running: no orientation yet.
+    Starting,
+    Running,
+    /// Back to yaw 0 with the next sample.
+    Resetting,
+    /// The sensor was away: back to level with the next sample, yaw kept.
+    Releveling,
+}
+
+/// A measurement of the bias under way.
+#[derive(Clone, Debug)]
+struct Measurement {
+    stillness: Stillness,
+    samples: u32,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    fresh_this_second: u32,
+    fresh_last_second: u32,
+    repeated: u32,
+}
+
+impl Tracker {
+    /// For a sensor set to these ranges. Begins by measuring the bias.
+    pub fn new(ranges: Ranges) -> Self {
+        Self {
+            ranges,
+            mode: Mode::default(),
+            bias: GyroBias::zero(),
+            rest: None,
+            measurement: Some(Measurement::new(ranges)),
+            fused: Complementary::new(DEFAULT_TIME_CONSTANT, SAMPLE_PERIOD),
+            gyro: DeadReckoning::new(SAMPLE_PERIOD),
+            flat: Flatland::new(DEFAULT_TIME_CONSTANT, SAMPLE_PERIOD),
+            phase: Phase::Starting,
+            ticks: 0,
+            counts: Counts::default(),
+        }
+    }
+
+    /// Takes a key. What it asks for happens with the next sample.
+    pub fn command(&mut self, command: Command) {
+        match command {
+            Command::Mode(mode) => {
+                self.mode = mode;
+                // The views that are not shown do not run, so they begin where the tracker is now.
+                self.restart_views();
+            }
+            // Before the start there is nothing to reset, and the bias is being measured already.
+            Command::Reset if self.phase != Phase::Starting => self.phase = Phase::Resetting,
+            Command::MeasureBias if self.phase != Phase::Starting => {
+                self.measurement = Some(Measurement::new(self.ranges));
+            }
+            Command::Reset | Command::MeasureBias => {}
+        }
+    }
+
+    /// To be called when the sensor is back after it was lost: the next sample levels the
+    /// orientation at once and keeps its yaw, which nobody knows better. A window of stillness
+    /// that was under way begins again, for it has a hole.
+    pub fn resume(&mut self) {
+        if self.phase == Phase::Running {
+            self.phase = Phase::Releveling;
+        }
+        if let Some(measurement) = &mut self.measurement {
+            measurement.stillness.restart();
+        }
+    }
+
+    /// The fused orientation, body to world; the identity until there is one.
+    pub fn orientation(&self) -> UnitQuaternion<f32> {
+        self.fused.orientation()
+    }
+
+    /// One sample. `emit` is given the lines it leads to: mostly none, every tenth time one to
+    /// three, and once a second up to eight.
+    pub fn update(&mut self, raw: &RawSample, health: &Health, emit: &mut impl FnMut(&Line)) {
+        self.count(raw);
+        let sample: Sample<f32> = self.ranges.sample(raw);
+        let reading = self.bias.correct(sample);
+        self.track(&reading);
+        self.measure(raw, sample.force, emit);
+        if self.phase != Phase::Starting {
+            self.show(&reading, health, emit);
+        }
+    }
+
+    fn count(&mut self, raw: &RawSample) {
+        self.ticks = self.ticks.wrapping_add(1);
+        if raw.fresh {
+            self.counts.fresh_this_second += 1;
+        } else {
+            self.counts.repeated = self.counts.repeated.saturating_add(1);
+        }
+        if self.every(INFO_EVERY) {
+            self.counts.fresh_last_second = self.counts.fresh_this_second;
+            self.counts.fresh_this_second = 0;
+        }
+    }
+
+    fn every(&self, samples: u32) -> bool {
+        self.ticks.is_multiple_of(samples)
+    }
+
+    /// The default mode runs the fused filter and nothing else.
+    fn track(&mut self, reading: &Reading<f32>) {
+        match self.phase {
+            Phase::Starting => return,
+            Phase::Running => {
+                self.fused.update(reading);
+            }
+            Phase::Resetting => self.start(reading.force()),
+            Phase::Releveling => {
+                self.fused.level(reading.force());
+                self.flat.reset(reading.force());
+                self.phase = Phase::Running;
+            }
+        }
+        match self.mode {
+            Mode::Flat => {
+                self.flat.update(reading);
+            }
+            Mode::ThreeD => {
+                self.gyro.update(reading);
+            }
+            Mode::Info | Mode::Gyro | Mode::Accel | Mode::Quaternion => {}
+        }
+    }
+
+    /// Yaw 0, and the tilt that this force (body frame) shows.
+    ///
+    /// For `r` the course's firmware goes to the identity and leaves the rest to its filter, which
+    /// is level again within a few samples. With a time constant of 7.6 s the picture would lean
+    /// for half a minute.
+    fn start(&mut self, force: SpecificForce<f32>) {
+        self.fused.reset(force);
+        self.flat.reset(force);
+        self.gyro.set(self.fused.orientation());
+        self.phase = Phase::Running;
+    }
+
+    fn restart_views(&mut self) {
+        self.gyro.set(self.fused.orientation());
+        let up = self.fused.orientation().inverse() * nalgebra::Vector3::y();
+        self.flat.reset(SpecificForce::from_g(up));
+    }
+
+    fn measure(
+        &mut self,
+        raw: &RawSample,
+        force: SpecificForce<f32>,
+        emit: &mut impl FnMut(&Line),
+    ) {
+        let Some(measurement) = &mut self.measurement else {
+            return;
+        };
+        if measurement.samples == 0 {
+            emit(&wire::text("Measuring bias"));
+        }
+        measurement.samples += 1;
+        let starting = self.phase == Phase::Starting;
+        match measurement.stillness.push(raw) {
+            Verdict::Still(rest) => {
+                self.measurement = None;
+                self.bias = GyroBias::new(rest.gyro_bias);
+                self.rest = Some(rest);
+                if starting {
+                    self.start(rest.force);
+                }
+                emit(&wire::bias_measured(rest.gyro_bias));
+            }
+            Verdict::Collecting | Verdict::Moved => {
+                if measurement.samples >= STILL_DEADLINE {
+                    self.measurement = None;
+                    if starting {
+                        self.start(force);
+                        emit(&wire::text(
+                            "warning: not still for 5 s, gyro bias taken as 0; hold still and press b",
+                        ));
+                    } else {
+                        emit(&wire::text("warning: moved for 5 s, gyro bias kept"));
+                    }
+                }
+            }
+        }
+    }
+
+    fn show(&self, reading: &Reading<f32>, health: &Health, emit: &mut impl FnMut(&Line)) {
+        if self.mode == Mode::Info {
+            if self.every(INFO_EVERY) {
+                self.show_info(health, emit);
+            }
+            return;
+        }
+        if !self.every(LINE_EVERY) {
+            return;
+        }
+        let fused = || wire::quaternion(Tag::Fused, &self.fused.orientation());
+        match self.mode {
+            Mode::Info => {}
+            Mode::Flat => emit(&wire::flat(&self.flat.roll())),
+            Mode::ThreeD => {
+                emit(&wire::quaternion(Tag::Gyro, &self.gyro.orientation()));
+                emit(&wire::angles(&angles::pitch_and_roll(reading.force())));
+                emit(&fused());
+            }
+            Mode::Gyro => emit(&wire::gyro(reading.rate())),
+            Mode::Accel => emit(&wire::force(reading.force())),
+            Mode::Quaternion => emit(&fused()),
+        }
+    }
+
+    fn show_info(&self, health: &Health, emit: &mut impl FnMut(&Line)) {
+        emit(&wire::reads_per_second(self.counts.fresh_last_second));
+        emit(&wire::gyro_bias(self.bias.rate()));
+        // Nothing is known of the rest if the board never rested.
+        if let Some(rest) = &self.rest {
+            emit(&wire::gyro_variance(rest));
+            emit(&wire::force_mean(rest));
+            emit(&wire::force_variance(rest));
+        }
+        emit(&wire::dropped(health.dropped_lines));
+        emit(&wire::repeated(self.counts.repeated));
+        emit(&wire::overruns(health.overruns));
+    }
+}
+
+impl Measurement {
+    fn new(ranges: Ranges) -> Self {
+        Self {
+            stillness: Stillness::new(ranges),
+            samples: 0,
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! The lines the course's programs read: a tag, numbers separated by single spaces, a newline.
+//! (Its web pages split on one space and give up on a tab; its Unity script wants a QC line within
+//! 32 bytes.) Every function returns one whole line, ready to be sent or dropped as one.
+//!
+//! The decimals are written without floating point at all: see [`Line`](crate::wire::Line) for what is promised.
+
+use crate::calibration::Rest;
+use crate::orientation::angles::PitchRoll;
+use crate::orientation::flatland::Roll;
+use crate::units::{Angle, AngularRate, SpecificForce};
+use core::fmt::{self, Write};
+use heapless::String;
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// One line, newline included.
+///
+/// Numbers are rounded to the nearest decimal, halves away from zero, exactly (the value of the
+/// float is what is rounded, not a product of it). Zero has no sign. A value of a million or more
+/// is written as ±999999.999, infinities too, and what is not a number as 0.000: a receiver's
+/// parser meets digits in every case, and nothing upstream should produce these.
+pub type Line = String<LINE_LEN>;
+
+/// Longest line in bytes, newline included.
+pub const LINE_LEN: usize = 96;
+
+/// Which orientation a quaternion line shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tag {
+    /// “QC”: the complementary filter.
+    Fused,
+    /// “QG”: the gyro alone.
+    Gyro,
+}
+
+/// `QC w x y z` or `QG w x y z`: body to world, scalar first, 3 decimals.
+///
+/// The four numbers as printed have a norm within 0.001 of 1.
+pub fn quaternion(tag: Tag, q: &UnitQuaternion<f32>) -> Line {
+    let tag = match tag {
+        Tag::Fused => "QC",
+        Tag::Gyro => "QG",
+    };
+    numbers::<3>(tag, &[q.w, q.i, q.j, q.k])
+}
+
+/// `EA pitch yaw roll` in degrees, 3 decimals. Yaw is 0: these are the accelerometer's angles.
+pub fn angles(tilt: &PitchRoll<f32>) -> Line {
+    numbers::<3>("EA", &[tilt.pitch.degrees(), 0.0, tilt.roll.degrees()])
+}
+
+/// `FLAT gyro accelerometer fused`: roll in degrees, 3 decimals.
+pub fn flat(roll: &Roll<f32>) -> Line {
+    let degrees = [roll.gyro, roll.accelerometer, roll.fused].map(Angle::degrees);
+    numbers::<3>("FLAT", &degrees)
+}
+
+/// `GYR: x y z` in °/s, 3 decimals, body frame.
+pub fn gyro(rate: AngularRate<f32>) -> Line {
+    vector::<3>("GYR:", rate.dps())
+}
+
+/// `ACC: x y z` in m/s², 3 decimals, body frame.
+pub fn force(force: SpecificForce<f32>) -> Line {
+    vector::<3>("ACC:", force.m_per_s2())
+}
+
+/// `GYR_BIAS: x y z` in °/s, 5 decimals: what is subtracted from every reading of the gyro.
+pub fn gyro_bias(bias: AngularRate<f32>) -> Line {
+    vector::<5>("GYR_BIAS:", bias.dps())
+}
+
+/// `GYR_VAR: x y z` in (°/s)², 5 decimals, over the window the bias is from.
+pub fn gyro_variance(rest: &Rest) -> Line {
+    vector::<5>("GYR_VAR:", rest.gyro_variance_dps2)
+}
+
+/// `ACC_BIAS: x y z` in m/s², 5 decimals. The course's name for the mean over that window; most of
+/// it is gravity, and it is not subtracted from anything.
+pub fn force_mean(rest: &Rest) -> Line {
+    vector::<5>("ACC_BIAS:", rest.force.m_per_s2())
+}
+
+/// `ACC_VAR: x y z` in (m/s²)², 5 decimals, over the same window.
+pub fn force_variance(rest: &Rest) -> Line {
+    vector::<5>("ACC_VAR:", rest.force_variance_m2_per_s4)
+}
+
+/// `nReads/sec: n`: new samples the sensor delivered in the last second.
+pub fn reads_per_second(n: u32) -> Line {
+    count("nReads/sec", n)
+}
+
+/// `DROPPED: n`: lines thrown away since the start because the host did not read.
+pub fn dropped(n: u32) -> Line {
+    count("DROPPED", n)
+}
+
+/// `REPEATED: n`: samples used twice since the start because the sensor had no new one in time.
+pub fn repeated(n: u32) -> Line {
+    count("REPEATED", n)
+}
+
+/// `OVERRUNS: n`: samples missed since the start because the bus was still busy.
+pub fn overruns(n: u32) -> Line {
+    count("OVERRUNS", n)
+}
+
+/// `bias: x y z deg/s (still)`: for people, when the bias has been measured.
+pub fn bias_measured(bias: AngularRate<f32>) -> Line {
+    let mut line = Line::new();
+    push(&mut line, "bias:");
+    for value in bias.dps().iter() {
+        push(&mut line, " ");
+        push_decimal::<3>(&mut line, *value);
+    }
+    push(&mut line, " deg/s (still)");
+    end(line)
+}
+
+/// A message for people. What does not fit into a line is cut off; a newline within becomes a
+/// space, or one line would be two.
+pub fn text(message: impl fmt::Display) -> Line {
+    struct Cut(Line);
+    impl Write for Cut {
+        fn write_str(&mut self, s: &str) -> fmt::Result {
+            for c in s.chars() {
+                let c = if c.is_control() { ' ' } else { c };
+                // The last byte is the newline's.
+                if self.0.len() + c.len_utf8() >= LINE_LEN {
+                    return Err(fmt::Error);
+                }
+                self.0.push(c).map_err(|_| fmt::Error)?;
+            }
+            Ok(())
+        }
+    }
+    let mut cut = Cut(Line::new());
+    // An error only says that the rest did not fit.
+    let _ = write!(cut, "{message}");
+    end(cut.0)
+}
+
+fn count(name: &str, n: u32) -> Line {
+    let mut line = Line::new();
+    push(&mut line, name);
+    push(&mut line, ": ");
+    push_digits(&mut line, u64::from(n), 1);
+    end(line)
+}
+
+fn vector<const DECIMALS: u32>(tag: &str, v: Vector3<f32>) -> Line {
+    numbers::<DECIMALS>(tag, &[v.x, v.y, v.z])
+}
+
+fn numbers<const DECIMALS: u32>(tag: &str, values: &[f32]) -> Line {
+    let mut line = Line::new();
+    push(&mut line, tag);
+    for &value in values {
+        push(&mut line, " ");
+        push_decimal::<DECIMALS>(&mut line, value);
+    }
+    end(line)
+}
+
+fn end(mut line: Line) -> Line {
+    push(&mut line, "\n");
+    line
+}
+
+/// No line here can be longer than [`LINE_LEN`]: the longest, of three numbers, stays under 60.
+fn push(line: &mut Line, s: &str) {
+    let _ = line.push_str(s);
+}
+
+fn push_decimal<const DECIMALS: u32>(line: &mut Line, value: f32) {
+    let one = 10_u64.pow(DECIMALS);
+    let steps = magnitude_in_steps(value, one);
+    if value < 0.0 && steps > 0 {
+        push(line, "-");
+    }
+    push_digits(line, steps / one, 1);
+    push(line, ".");
+    push_digits(line, steps % one, DECIMALS as usize);
+}
+
+/// |value| in steps of 1/`per_one`, to the nearest, halves up.
+fn magnitude_in_steps(value: f32, per_one: u64) -> u64 {
+    let largest = 1_000_000 * per_one - per_one.div_ceil(1000);
+    if value.is_nan() {
+        return 0;
+    }
+    if value.abs() >= 1e6 {
+        return largest;
+    }
+    // value = significand × 2^-shift. Below a million, shift is at least 4, and significand ×
+    // per_one has at most 24 + 17 bits.
+    let bits = value.to_bits();
+    let exponent = (bits >> 23) & 0xFF;
+    let fraction = u64::from(bits & 0x007F_FFFF);
+    let (significand, shift) = match exponent {
+        0 => (fraction, 149),
+        _ => (fraction | 0x0080_0000, 150 - exponent),
+    };
+    let product = significand * per_one;
+    let half = 1_u64.checked_shl(shift - 1).unwrap_or(u64::MAX / 2);
+    let rounded = (product + half).checked_shr(shift).unwrap_or(0);
+    rounded.min(largest)
+}
+
+/// Decimal digits, padded with zeros on the left to at least `width`.
+fn push_digits(line: &mut Line, mut value: u64, width: usize) {
+    let mut digits = [b'0'; 20];
+    let mut used = 0;
+    for place in digits.iter_mut().rev() {
+        // 32-bit division is an instruction on the target, 64-bit division a routine.
+        if let Ok(small) = u32::try_from(value) {
+            *place = b'0' + (small % 10) as u8;
+            value = u64::from(small / 10);
+        } else {
+            *place = b'0' + (value % 10) as u8;
+            value /= 10;
+        }
+        used += 1;
+        if value == 0 && used >= width {
+            break;
+        }
+    }
+    for &digit in digits.iter().skip(digits.len() - used) {
+        let _ = line.push(char::from(digit));
+    }
+}
