@@ -330,7 +330,7 @@ impl Board {
         std::mem::take(&mut self.events)
     }
 
-    /// Reads the 32-bit variable whose symbol ends in `path`, such as `usb::DROPPED_LINES`.
+    /// Reads the 32-bit variable whose symbol ends in `path`, such as `vrduino_dropped_lines`.
     pub fn variable(&self, path: &str) -> Option<u32> {
         let address = self.image.address_of(path)?;
         self.shared.chip().ram.word(address)

@@ -35,6 +35,9 @@ const PACKET: usize = 63;
 const PRIORITY: u8 = 0x80;
 
 static PORT: Mutex<RefCell<Option<Port>>> = Mutex::new(RefCell::new(None));
+/// Under a name that survives optimisation, so that the emulator can report it.
+// SAFETY: no other item has this name.
+#[unsafe(export_name = "vrduino_dropped_lines")]
 static DROPPED_LINES: AtomicU32 = AtomicU32::new(0);
 static OPENED: AtomicBool = AtomicBool::new(false);
 

@@ -66,7 +66,7 @@ const FAULT_HELP: &str = "Break something, from S on (else from the start) and u
 
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(value) if value >= 0.0 && value < 1e9 => Ok(value),
+        Ok(value) if (0.0..1e9).contains(&value) => Ok(value),
         _ => Err("give a number of seconds, such as 10 or 2.5".into()),
     }
 }

@@ -37,7 +37,8 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
     // What the user has given is looked at first: no point in building before a wrong file name.
-    let (motion, description, ends) = choose_motion(arguments)?;
+    let motion = choose_motion(arguments)?;
+    let (description, ends) = (motion.describe(), motion.duration());
     let path = match &arguments.image {
         Some(path) => path.clone(),
         None => firmware::build(firmware::BuildOptions { quiet: true })?,
@@ -80,16 +81,13 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     Ok(())
 }
 
-/// The motion, what to call it, and when it ends by itself.
-fn choose_motion(arguments: &Arguments) -> Result<(Box<dyn Motion>, String, Option<f64>), Error> {
-    let motion: Box<dyn Motion> = match &arguments.motion {
+/// What moves the sensor, from the chosen start.
+fn choose_motion(arguments: &Arguments) -> Result<Box<dyn Motion>, Error> {
+    let motion = match &arguments.motion {
         Some(path) => motion::open(path)?,
         None => motion::built_in(),
     };
-    let description = motion.describe();
-    let motion = motion::skip(motion, arguments.start)?;
-    let ends = motion.duration();
-    Ok((motion, description, ends))
+    Ok(motion::skip(motion, arguments.start)?)
 }
 
 /// The PC's side: where the stream goes and how fast.

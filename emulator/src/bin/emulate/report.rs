@@ -93,7 +93,7 @@ impl Report {
             }
             None => eprintln!("lines   {}, none of them QC", self.lines),
         }
-        match board.variable("usb::DROPPED_LINES") {
+        match board.variable("vrduino_dropped_lines") {
             Some(count) => eprintln!("dropped {count} lines, for want of a reader"),
             None => eprintln!("dropped unknown: the image has no counter that the emulator knows"),
         }
