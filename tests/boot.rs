@@ -37,6 +37,8 @@ fn image() -> Image {
 struct Run {
     board: Board,
     text: String,
+    /// How much of the text has been taken apart.
+    read: usize,
     /// Each orientation with the time at which the host had it.
     orientations: Vec<(f64, [f64; 4])>,
 }
@@ -46,6 +48,7 @@ impl Run {
         Run {
             board: Board::new(image(), setup),
             text: String::new(),
+            read: 0,
             orientations: Vec::new(),
         }
     }
@@ -66,13 +69,19 @@ impl Run {
             let now = time::seconds(self.board.now());
             self.text
                 .push_str(std::str::from_utf8(&received).expect("the stream is text"));
-            self.orientations.extend(
-                String::from_utf8_lossy(&received)
-                    .lines()
-                    .filter_map(quaternion)
-                    .map(|q| (now, q)),
-            );
+            // A line counts once its end is there.
+            while let Some(end) = self.text[self.read..].find('\n') {
+                let line = &self.text[self.read..self.read + end];
+                self.orientations.extend(quaternion(line).map(|q| (now, q)));
+                self.read += end + 1;
+            }
         }
+    }
+
+    /// Forgets the text so far, to wait for something new.
+    fn forget(&mut self) {
+        self.text.drain(..self.read);
+        self.read = 0;
     }
 
     fn wait_for(&mut self, text: &str, seconds: f64) {
@@ -93,14 +102,19 @@ impl Run {
     }
 
     fn variable(&self, name: &str) -> u32 {
-        self.board.variable(name).expect("the image has this symbol")
+        self.board
+            .variable(name)
+            .expect("the image has this symbol")
     }
 }
 
 /// The components of a QC line, if it is a whole one.
 fn quaternion(line: &str) -> Option<[f64; 4]> {
-    let numbers: Vec<f64> =
-        line.strip_prefix("QC ")?.split(' ').map(|n| n.parse().unwrap()).collect();
+    let numbers: Vec<f64> = line
+        .strip_prefix("QC ")?
+        .split(' ')
+        .map(|n| n.parse().unwrap())
+        .collect();
     let q: [f64; 4] = numbers.try_into().expect("four components");
     let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
     assert!((norm - 1.0).abs() <= 0.002, "|q| = {norm} in {line:?}");
@@ -119,8 +133,15 @@ fn a_still_start_gives_the_first_orientation_within_three_seconds_and_a_hundred_
     assert!(first < 3.0, "first QC at {first} s");
     for second in 2..4 {
         let span = f64::from(second)..f64::from(second + 1);
-        let lines = run.orientations.iter().filter(|(at, _)| span.contains(at)).count();
-        assert!((95..=105).contains(&lines), "{lines} lines in second {second}");
+        let lines = run
+            .orientations
+            .iter()
+            .filter(|(at, _)| span.contains(at))
+            .count();
+        assert!(
+            (95..=105).contains(&lines),
+            "{lines} lines in second {second}"
+        );
     }
     assert_eq!(run.last(), [1.0, 0.0, 0.0, 0.0]);
     assert_eq!(run.variable("vrduino_dropped_lines"), 0);
@@ -155,16 +176,21 @@ fn turns_about_each_axis_both_ways_and_a_compound_turn_are_found_in_the_stream()
     ];
     let (still, turn, pause) = (2.5, 0.6, 0.4);
     let motion = || {
-        script.iter().fold(Turns::new(still, pause), |turns, &(axis, degrees)| {
-            turns.turn(axis, degrees, turn)
-        })
+        script
+            .iter()
+            .fold(Turns::new(still, pause), |turns, &(axis, degrees)| {
+                turns.turn(axis, degrees, turn)
+            })
     };
     let mut truth = motion();
     let mut run = Run::moved_by(motion());
     run.seconds(still);
     for (index, (axis, degrees)) in script.into_iter().enumerate() {
         run.seconds(turn + pause);
-        let expected = truth.at(time::seconds(run.board.now()) - 0.01).truth.unwrap();
+        let expected = truth
+            .at(time::seconds(run.board.now()) - 0.01)
+            .truth
+            .unwrap();
         let error = degrees_between(run.last(), expected);
         // 0.01 °/s of bias left over, the sensor's resolution, and print.
         assert!(
@@ -183,7 +209,10 @@ fn a_board_that_lies_on_its_side_starts_with_that_tilt_and_no_yaw() {
         let mut run = Run::moved_by(Turns::new(1e6, 0.0).from_attitude(attitude));
         run.seconds(1.5);
         let error = degrees_between(run.last(), attitude);
-        assert!(error < 0.1 + PRINTED, "{degrees}° about {axis:?}: {error}° off");
+        assert!(
+            error < 0.1 + PRINTED,
+            "{degrees}° about {axis:?}: {error}° off"
+        );
     }
 }
 
@@ -193,7 +222,10 @@ fn gyro_bias_and_noise_are_calibrated_away_at_a_still_start() {
     run.seconds(2.9);
     assert!(run.text.contains("(still)"), "{}", run.text);
     let error = degrees_between(run.last(), [1.0, 0.0, 0.0, 0.0]);
-    assert!(error < 0.5, "{error}° off after 1.7 s at rest with a bias of 1 °/s");
+    assert!(
+        error < 0.5,
+        "{error}° off after 1.7 s at rest with a bias of 1 °/s"
+    );
 }
 
 #[test]
@@ -219,7 +251,13 @@ fn the_stream_agrees_with_the_library_on_the_same_samples_generated() {
 /// Both run the same single-precision code, one compiled for the host and one for a processor without
 /// floating point; the bound is one unit of the last printed digit.
 fn agrees_with_library(run: &mut Run) {
-    let bursts = run.board.chip().sensor.recording.take().expect("recording is on");
+    let bursts = run
+        .board
+        .chip()
+        .sensor
+        .recording
+        .take()
+        .expect("recording is on");
     let mut tracker = Tracker::new(vrduino::imu::RANGES);
     let mut expected = Vec::new();
     for burst in &bursts {
@@ -232,7 +270,11 @@ fn agrees_with_library(run: &mut Run) {
     assert_eq!(run.variable("vrduino_dropped_lines"), 0);
     let compared = run.orientations.len();
     assert!(compared > 500, "only {compared} lines to compare");
-    assert!(expected.len().abs_diff(compared) <= 2, "{} against {compared}", expected.len());
+    assert!(
+        expected.len().abs_diff(compared) <= 2,
+        "{} against {compared}",
+        expected.len()
+    );
     for (index, ((at, streamed), expected)) in run.orientations.iter().zip(&expected).enumerate() {
         for (a, b) in streamed.iter().zip(expected) {
             assert!(
@@ -251,9 +293,16 @@ fn follows_recording(name: &str) {
     let path = PathBuf::from(folder).join(name);
     let bytes = std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     // The recording's own marks (layout: 64 bytes of header, 28 a sample, the last two are flags).
-    let moving: Vec<bool> = bytes[64..].chunks_exact(28).map(|record| record[26] & 1 != 0).collect();
+    let moving: Vec<bool> = bytes[64..]
+        .chunks_exact(28)
+        .map(|record| record[26] & 1 != 0)
+        .collect();
     let rate = 2000.0 / 7.0;
-    let begin = moving.iter().position(|&moving| moving).expect("there is movement") as f64 / rate;
+    let begin = moving
+        .iter()
+        .position(|&moving| moving)
+        .expect("there is movement") as f64
+        / rate;
     let start = begin - 3.0;
     let in_motion = moving
         .iter()
@@ -262,7 +311,10 @@ fn follows_recording(name: &str) {
         .filter(|&&moving| moving)
         .count() as f64
         / rate;
-    assert!(in_motion >= 20.0, "{name} moves for {in_motion} s of {MOVEMENT} only");
+    assert!(
+        in_motion >= 20.0,
+        "{name} moves for {in_motion} s of {MOVEMENT} only"
+    );
 
     let open = || motion::skip(motion::open(&path).unwrap(), start).unwrap();
     let mut truth = open();
@@ -281,9 +333,16 @@ fn follows_recording(name: &str) {
             Some(cosine.clamp(-1.0, 1.0).acos().to_degrees())
         })
         .collect();
-    assert!(errors.len() > 1800, "{name}: only {} references", errors.len());
+    assert!(
+        errors.len() > 1800,
+        "{name}: only {} references",
+        errors.len()
+    );
     let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
-    eprintln!("{name}: inclination {rms:.2}° rms over {:.1} s", errors.len() as f64 / 100.0);
+    eprintln!(
+        "{name}: inclination {rms:.2}° rms over {:.1} s",
+        errors.len() as f64 / 100.0
+    );
     // The course filter at its best time constant has 4.2° on average over whole recordings.
     assert!(rms < 8.0, "{name}: inclination {rms}° rms");
     agrees_with_library(&mut run);
@@ -322,11 +381,22 @@ fn a_host_that_stops_reading_costs_lines_but_no_samples() {
     run.board.chip().host.set_reading(true);
     run.seconds(0.3);
     let dropped = run.variable("vrduino_dropped_lines");
-    assert!((150..=200).contains(&dropped), "{dropped} lines dropped in 2 s");
-    assert!(run.text.lines().all(|line| line.is_empty() || line.len() > 6), "a torn line");
+    assert!(
+        (150..=200).contains(&dropped),
+        "{dropped} lines dropped in 2 s"
+    );
+    assert!(
+        run.text
+            .lines()
+            .all(|line| line.is_empty() || line.len() > 6),
+        "a torn line"
+    );
     let expected = motion().at(10.0).truth.unwrap();
     let error = degrees_between(run.last(), expected);
-    assert!(error < 0.2 + PRINTED, "{error}° off: samples were lost with the lines");
+    assert!(
+        error < 0.2 + PRINTED,
+        "{error}° off: samples were lost with the lines"
+    );
 }
 
 #[test]
@@ -335,7 +405,10 @@ fn the_board_survives_a_bus_reset_a_replug_and_back_to_back_requests() {
     run.seconds(1.5);
     run.board.chip().host.reset_bus();
     run.seconds(0.4);
-    assert!(run.board.chip().host.is_open(), "not enumerated again after a bus reset");
+    assert!(
+        run.board.chip().host.is_open(),
+        "not enumerated again after a bus reset"
+    );
     run.board.chip().host.set_plugged(false);
     run.seconds(0.3);
     run.board.chip().host.set_plugged(true);
@@ -347,7 +420,13 @@ fn the_board_survives_a_bus_reset_a_replug_and_back_to_back_requests() {
             // One that must be refused between two that must be answered.
             chip.host.request(Request::read(0x80, 6, 0x0100, 0, 18));
             chip.host.request(Request::read(0x80, 6, 0x0600, 0, 10));
-            chip.host.request(Request::write(0x21, 0x20, 0, 0, &[0x80, 0x25, 0, 0, 0, 0, 8]));
+            chip.host.request(Request::write(
+                0x21,
+                0x20,
+                0,
+                0,
+                &[0x80, 0x25, 0, 0, 0, 0, 8],
+            ));
             chip.host.request(Request::read(0xA1, 0x21, 0, 0, 7));
         }
     }
@@ -365,7 +444,10 @@ fn the_board_survives_a_bus_reset_a_replug_and_back_to_back_requests() {
     }
     let before = run.orientations.len();
     run.seconds(0.5);
-    assert!(run.orientations.len() > before + 40, "the stream has not gone on");
+    assert!(
+        run.orientations.len() > before + 40,
+        "the stream has not gone on"
+    );
     assert_eq!(run.board.chip().host.complaints, [""; 0]);
     assert_eq!(run.board.resets(), 0);
 }
@@ -374,12 +456,18 @@ fn the_board_survives_a_bus_reset_a_replug_and_back_to_back_requests() {
 fn keys_choose_what_is_streamed() {
     let mut run = Run::still();
     run.seconds(1.5);
-    for (key, tag) in [("1", "FLAT "), ("2", "EA "), ("3", "GYR: "), ("4", "ACC: "), ("0", "nReads/sec: ")] {
-        run.text.clear();
+    for (key, tag) in [
+        ("1", "FLAT "),
+        ("2", "EA "),
+        ("3", "GYR: "),
+        ("4", "ACC: "),
+        ("0", "nReads/sec: "),
+    ] {
+        run.forget();
         run.board.chip().host.send(key.as_bytes());
         run.wait_for(tag, 1.5);
     }
-    run.text.clear();
+    run.forget();
     run.board.chip().host.send(b"b5");
     run.wait_for("Measuring bias", 0.5);
     run.wait_for("(still)", 2.0);
@@ -435,7 +523,7 @@ fn a_sensor_that_stops_answering_is_reported_and_taken_up_again() {
     run.board.chip().sensor.faults.absent = true;
     run.wait_for("error: the IMU stopped answering", 1.0);
     run.board.chip().sensor.faults.absent = false;
-    run.text.clear();
+    run.forget();
     run.wait_for("QC ", 2.5);
     assert_eq!(run.board.resets(), 0);
 }
@@ -447,7 +535,7 @@ fn a_sensor_without_new_samples_is_reported() {
     run.board.chip().sensor.faults.frozen = true;
     run.wait_for("error: the IMU takes no new samples", 1.0);
     run.board.chip().sensor.faults.frozen = false;
-    run.text.clear();
+    run.forget();
     run.wait_for("QC ", 2.5);
 }
 
@@ -458,7 +546,7 @@ fn a_sensor_that_lost_its_settings_is_set_up_again() {
     let now = run.board.now();
     run.board.chip().sensor.brown_out(now);
     run.wait_for("error: the IMU", 1.0);
-    run.text.clear();
+    run.forget();
     run.wait_for("QC ", 2.5);
     assert!(degrees_between(run.last(), [1.0, 0.0, 0.0, 0.0]) < 1.0);
 }
@@ -479,7 +567,7 @@ fn a_clock_line_held_low_is_reported_and_never_hangs_the_board() {
     run.wait_for("error: ", 1.0);
     run.seconds(1.0);
     run.board.chip().pins.scl_held = false;
-    run.text.clear();
+    run.forget();
     run.wait_for("QC ", 3.0);
     assert_eq!(run.board.resets(), 0);
 }
@@ -489,11 +577,15 @@ fn a_hang_becomes_a_watchdog_reset_and_the_next_life_says_where() {
     let mut run = Run::still();
     run.seconds(1.5);
     // An endless loop: the branch-to-self behind a hard fault will do.
-    let address = run.board.image().address_of("rust_begin_unwind").expect("the panic handler is there");
+    let address = run
+        .board
+        .image()
+        .address_of("rust_begin_unwind")
+        .expect("the panic handler is there");
     run.board.jump(address);
     run.wait_for("warning: reset by watchdog", 2.0);
     assert_eq!(run.board.resets(), 1);
-    run.text.clear();
+    run.forget();
     run.wait_for("QC ", 3.0);
 }
 
@@ -504,7 +596,10 @@ fn the_sensors_own_clock_may_be_one_percent_off() {
         setup.sensor_clock_error = error;
         let mut run = Run::with(setup);
         run.seconds(3.3);
-        let expected = multiply(motion::rotation::about(Y, 90f64.to_radians()), [1.0, 0.0, 0.0, 0.0]);
+        let expected = multiply(
+            motion::rotation::about(Y, 90f64.to_radians()),
+            [1.0, 0.0, 0.0, 0.0],
+        );
         let off = degrees_between(run.last(), expected);
         assert!(off < 0.5, "clock {error}: {off}° off");
     }
@@ -517,5 +612,9 @@ fn the_core_sleeps_most_of_the_time() {
     let before = run.board.awake_for();
     run.board.run(SECOND);
     let load = (run.board.awake_for() - before) as f64 / SECOND as f64;
-    assert!(load < 0.5, "the core is busy {:.1} % of the time", load * 100.0);
+    assert!(
+        load < 0.5,
+        "the core is busy {:.1} % of the time",
+        load * 100.0
+    );
 }

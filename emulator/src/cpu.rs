@@ -25,6 +25,10 @@ const PERIPHERALS_SIZE: u32 = 0x0010_0000;
 const FLEXRAM_BASE: u32 = 0x1400_0000;
 const FLEXRAM_SIZE: u64 = 2 * 1024;
 
+/// xPSR: ITSTATE, in its two places, and the number of the exception being handled.
+const IT_STATE: u32 = 0x0600_FC00;
+const EXCEPTION: u32 = 0x1FF;
+
 /// What answers the processor's accesses to the peripheral bridges.
 pub trait PeripheralBus: Send + Sync + std::fmt::Debug {
     /// Reads `width` bytes; `None` is a bus error.
@@ -151,7 +155,41 @@ impl Cpu {
 
     /// Executes one instruction, exception entry or idle cycle; returns the processor cycles it took.
     pub fn step(&self) -> u64 {
-        self.core.step()
+        let before = self.core.xpsr();
+        if before & IT_STATE == 0 {
+            return self.core.step();
+        }
+        let stack = self.core.reg(13);
+        let cycles = self.core.step();
+        self.keep_it_state(before, stack);
+        cycles
+    }
+
+    /// Puts the rest of an IT block into the frame of an exception that interrupted it.
+    ///
+    /// The architecture stacks ITSTATE with the xPSR (DDI 0403, B1.5.6); rsemu 0.0.7 leaves it out, so
+    /// that after the return the rest of the block would be executed whatever its condition.
+    fn keep_it_state(&self, before: u32, stack: u32) {
+        const SVCALL: u32 = 11;
+        let exception = u32::from(self.core.current_exception().0);
+        // An entry pushes a frame; a return inside an IT block pops one. A supervisor call has
+        // advanced the state, and stands last in its block by the architecture's advice.
+        if exception == before & EXCEPTION || exception == SVCALL || self.core.reg(13) > stack {
+            return;
+        }
+        let on_process_stack = self.core.reg(14) & 4 != 0;
+        let frame = if on_process_stack {
+            self.core.psp()
+        } else {
+            self.core.msp()
+        };
+        let stacked = u64::from(frame.wrapping_add(28));
+        let attributes = MemAttrs::DEFAULT;
+        if let Ok(xpsr) = self.space.read(stacked, Width::U32, attributes) {
+            let restored = xpsr | u64::from(before & IT_STATE);
+            // A stack outside memory has already become a fault of its own.
+            let _ = self.space.write(stacked, Width::U32, restored, attributes);
+        }
     }
 
     /// Whether the core sleeps in WFI or WFE.
@@ -167,6 +205,12 @@ impl Cpu {
     /// Whether the program asked for a system reset (AIRCR.SYSRESETREQ).
     pub fn wants_reset(&self) -> bool {
         self.core.reset_requested()
+    }
+
+    /// Enables interrupt `irq` as a write to the NVIC would.
+    pub fn enable_irq(&self, irq: u16) {
+        let exception = rsemu::cpu::arm::v7m::sys::Exception(irq + 16);
+        self.core.with_sys(|sys| sys.set_enable(exception, true));
     }
 
     /// Drives interrupt input `irq`.
@@ -204,6 +248,11 @@ impl Cpu {
     /// Continues at `address`: how a test makes the program hang or panic where it likes.
     pub fn set_pc(&self, address: u32) {
         self.core.set_pc(address);
+    }
+
+    /// Register `number`, 0 to 15.
+    pub fn register(&self, number: u8) -> u32 {
+        self.core.reg(number)
     }
 
     /// The main stack pointer.
