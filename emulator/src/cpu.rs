@@ -75,19 +75,22 @@ impl Ram {
         })
     }
 
-    /// Reads bytes from `address` on; `None` if any lies outside the SRAM.
+    /// Reads bytes from `address` on; `None` if any lies outside the SRAM. No bytes may be anywhere.
     pub fn bytes(&self, address: u32, length: usize) -> Option<Vec<u8>> {
-        let offset = u64::from(address.checked_sub(RAM_BASE)?);
         let mut bytes = vec![0; length];
-        self.0.read_at(offset, &mut bytes).ok()?;
+        if length > 0 {
+            let offset = u64::from(address.checked_sub(RAM_BASE)?);
+            self.0.read_at(offset, &mut bytes).ok()?;
+        }
         Some(bytes)
     }
 
     /// Writes bytes from `address` on; `false` if any would lie outside the SRAM.
     pub fn set_bytes(&self, address: u32, bytes: &[u8]) -> bool {
-        address
-            .checked_sub(RAM_BASE)
-            .is_some_and(|offset| self.0.write_at(u64::from(offset), bytes).is_ok())
+        bytes.is_empty()
+            || address
+                .checked_sub(RAM_BASE)
+                .is_some_and(|offset| self.0.write_at(u64::from(offset), bytes).is_ok())
     }
 }
 

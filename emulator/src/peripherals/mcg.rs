@@ -81,7 +81,7 @@ impl ClockGenerator {
         let divider = u32::from(self.registers[C5] & 0x1F) + 1;
         let multiplier = u32::from(self.registers[C6] & 0x1F) + 24;
         (self.registers[C6] & 0x40 != 0 && self.pll_runs(now))
-            .then(|| CRYSTAL_HZ / divider * multiplier)
+            .then(|| CRYSTAL_HZ * multiplier / divider)
     }
 
     /// MCGOUTCLK.
