@@ -3,6 +3,8 @@
 //! The main program puts whole lines into a queue and takes keys out of another; the USB interrupt
 //! does the rest. A line that finds the queue full is dropped and counted.
 
+mod buffers;
+
 mod bus;
 
 mod descriptors;

@@ -1,8 +1,7 @@
 //! The chip's USB controller (K20 manual, chapter 43) as `usb-device` wants it.
 //!
-//! Each endpoint has two buffers per direction, used in turn. The controller works from the buffer
-//! descriptor table in RAM: a descriptor whose OWN bit is set belongs to it, and it clears the bit when
-//! the transaction is over. The rules that matter here:
+//! Each endpoint has two buffers per direction, used in turn ([`super::buffers`]). The rules that matter
+//! here:
 //!
 //! * Tokens are reported one per [`UsbBus::poll`], in their order; merging them would let a SETUP hide
 //!   the end of the status stage before it.
@@ -14,7 +13,7 @@
 //!   acknowledged and dropped by the controller.
 
 use core::cell::RefCell;
-use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
+use core::sync::atomic::Ordering;
 
 use critical_section::Mutex;
 use mk20dx_hal::pac;
@@ -22,10 +21,7 @@ use usb_device::bus::{PollResult, UsbBus};
 use usb_device::endpoint::{EndpointAddress, EndpointType};
 use usb_device::{Result, UsbDirection, UsbError};
 
-/// Endpoint 0 and the three of a serial port.
-const ENDPOINTS: usize = 4;
-/// Largest packet of a bulk or control endpoint at full speed.
-const PACKET: usize = 64;
+use super::buffers::{self, ENDPOINTS, PACKET, buffer, descriptor};
 
 /// ISTAT flags, cleared by writing them as 1.
 mod flag {
@@ -53,79 +49,6 @@ const TRANSMIT: u8 = 1 << 2;
 const RECEIVE: u8 = 1 << 3;
 /// No SETUP on this endpoint.
 const NO_CONTROL: u8 = 1 << 4;
-
-/// Buffer descriptor.
-const OWN: u32 = 1 << 7;
-const DATA1: u32 = 1 << 6;
-const DTS: u32 = 1 << 3;
-
-/// Token identifier of a SETUP, as the controller writes it back.
-const SETUP: u32 = 0xD;
-
-/// A buffer descriptor. Atomics, because the controller changes it behind the program's back.
-struct Descriptor {
-    status: AtomicU32,
-    address: AtomicU32,
-}
-
-/// Indexed by endpoint, direction (1 is towards the host), bank. The controller takes the upper 23 bits
-/// of its address only (43.3.4).
-#[repr(C, align(512))]
-struct Table([[[Descriptor; 2]; 2]; ENDPOINTS]);
-
-static TABLE: Table = Table(
-    [const {
-        [const {
-            [const {
-                Descriptor {
-                    status: AtomicU32::new(0),
-                    address: AtomicU32::new(0),
-                }
-            }; 2]
-        }; 2]
-    }; ENDPOINTS],
-);
-
-#[repr(C, align(4))]
-struct Buffer([AtomicU8; PACKET]);
-
-static BUFFERS: [[[Buffer; 2]; 2]; ENDPOINTS] =
-    [const { [const { [const { Buffer([const { AtomicU8::new(0) }; PACKET]) }; 2] }; 2] };
-        ENDPOINTS];
-
-impl Descriptor {
-    /// Gives the buffer to the controller: `length` bytes with toggle `data1`.
-    fn give(&self, length: usize, data1: bool) {
-        let toggle = if data1 { DATA1 } else { 0 };
-        // Release: the buffer's bytes are in place before the controller may look at them.
-        self.status.store(
-            (length as u32) << 16 | OWN | toggle | DTS,
-            Ordering::Release,
-        );
-    }
-
-    fn withdraw(&self) {
-        self.status.store(0, Ordering::Release);
-    }
-
-    fn is_given(&self) -> bool {
-        self.status.load(Ordering::Acquire) & OWN != 0
-    }
-
-    fn length(&self) -> usize {
-        (self.status.load(Ordering::Acquire) >> 16 & 0x3FF) as usize
-    }
-
-    fn token(&self) -> u32 {
-        self.status.load(Ordering::Acquire) >> 2 & 0xF
-    }
-
-    fn set_toggle(&self, data1: bool) {
-        if self.is_given() {
-            self.give(self.length(), data1);
-        }
-    }
-}
 
 /// One endpoint towards the host.
 #[derive(Clone, Copy, Default)]
@@ -165,14 +88,6 @@ pub struct Bus {
 fn registers() -> &'static pac::usb0::RegisterBlock {
     // SAFETY: the controller is always there, and Bus::new has taken the only handle on it.
     unsafe { &*pac::Usb0::PTR }
-}
-
-fn descriptor(endpoint: usize, transmit: bool, bank: usize) -> &'static Descriptor {
-    &TABLE.0[endpoint % ENDPOINTS][usize::from(transmit)][bank & 1]
-}
-
-fn buffer(endpoint: usize, transmit: bool, bank: usize) -> &'static [AtomicU8; PACKET] {
-    &BUFFERS[endpoint % ENDPOINTS][usize::from(transmit)][bank & 1].0
 }
 
 impl Bus {
@@ -240,7 +155,7 @@ impl Bus {
                 ep_setup: 0,
             };
         }
-        if descriptor(number, false, bank).token() == SETUP {
+        if descriptor(number, false, bank).holds_setup() {
             self.setup(bank);
             return PollResult::Data {
                 ep_out: 0,
@@ -348,16 +263,8 @@ impl UsbBus for Bus {
     }
 
     fn enable(&mut self) {
-        for number in 0..ENDPOINTS {
-            for (transmit, bank) in [(false, 0), (false, 1), (true, 0), (true, 1)] {
-                let at = buffer(number, transmit, bank).as_ptr() as u32;
-                descriptor(number, transmit, bank)
-                    .address
-                    .store(at, Ordering::Relaxed);
-            }
-        }
-        let [_, page1, page2, page3] = (&raw const TABLE as u32).to_le_bytes();
-        // SAFETY: TABLE is static and aligned to 512 bytes.
+        let [_, page1, page2, page3] = buffers::connect().to_le_bytes();
+        // SAFETY: the table is static and aligned to 512 bytes.
         registers().bdtpage1().write(|w| unsafe { w.bits(page1) });
         // SAFETY: as above.
         registers().bdtpage2().write(|w| unsafe { w.bits(page2) });
