@@ -65,7 +65,7 @@ impl Board {
         let imu = Imu::new(
             chip.i2c0, chip.portb, chip.ptb, chip.pit, &chip.sim, &clocks,
         );
-        let mut board = Board {
+        Board {
             usb,
             imu,
             led,
@@ -73,9 +73,7 @@ impl Board {
             watchdog: Watchdog::new(chip.wdog),
             last_life,
             fault: None,
-        };
-        board.introduce();
-        board
+        }
     }
 
     /// Finds the sensor, sets it up and starts sampling.

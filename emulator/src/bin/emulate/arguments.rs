@@ -17,7 +17,7 @@ use vrduino_emulator::time::{self, Ticks};
 #[command(name = "cargo emulate", version)]
 pub struct Arguments {
     /// Seconds of emulated time to run; else until the motion ends, or Ctrl-C
-    #[arg(long, value_name = "N", value_parser = positive)]
+    #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
 
     /// What moves the sensor: an .imub recording, a CSV file with the columns t,gx,gy,gz,ax,ay,az (s, rad/s, m/s²), or
@@ -26,7 +26,7 @@ pub struct Arguments {
     pub motion: Option<PathBuf>,
 
     /// Begin the motion here, in seconds
-    #[arg(long, value_name = "S", default_value = "0", value_parser = positive)]
+    #[arg(long, value_name = "S", default_value = "0", value_parser = positive, allow_negative_numbers = true)]
     pub start: f64,
 
     /// An image to boot instead of the tracker's: ELF or Intel HEX
@@ -53,7 +53,7 @@ pub struct Arguments {
     #[arg(
         long,
         value_name = "PERCENT",
-        default_value = "0",
+        default_value = "0", value_parser = percent,
         allow_negative_numbers = true
     )]
     pub sensor_clock: f64,
@@ -67,7 +67,14 @@ const FAULT_HELP: &str = "Break something, from S on (else from the start) and u
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (0.0..1e9).contains(&value) => Ok(value),
-        _ => Err("give a number of seconds, such as 10 or 2.5".into()),
+        _ => Err("give a number of seconds from 0 up to 1000000000, such as 10 or 2.5".into()),
+    }
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (-10.0..=10.0).contains(&value) => Ok(value),
+        _ => Err("give a percentage from -10 to 10, such as 0.8".into()),
     }
 }
 
@@ -90,6 +97,9 @@ impl FromStr for Typed {
         let (keys, at) = text
             .rsplit_once('@')
             .ok_or("give keys and a time, such as 2@3.5")?;
+        if keys.is_empty() {
+            return Err("give at least one key before the @, such as 2@3.5".into());
+        }
         Ok(Typed {
             keys: keys.into(),
             at: time::ticks(positive(at)?),
@@ -130,6 +140,9 @@ impl FromStr for Fault {
             None => (0.0, None),
             Some((from, until)) => (positive(from)?, until.map(positive).transpose()?),
         };
+        if until.is_some_and(|until| until <= from) {
+            return Err("the fault has to end after it begins, as in absent@2-4".into());
+        }
         Ok(Fault {
             kind: Kind::from_str(kind, true)
                 .map_err(|_| "give one of absent, frozen, brown-out, stuck-sda, stuck-scl, unread, unplugged")?,

@@ -124,8 +124,12 @@ impl Session {
                 self.terminal.write(&received);
             }
             let mut stdout = io::stdout().lock();
-            stdout.write_all(&received)?;
-            stdout.flush()?;
+            stdout
+                .write_all(&received)
+                .and_then(|()| stdout.flush())
+                .map_err(|error| {
+                    io::Error::new(error.kind(), format!("standard output: {error}"))
+                })?;
         }
         self.terminal.flush();
         self.pace(attached || self.realtime, board.now());

@@ -93,8 +93,12 @@ impl Report {
             }
             None => eprintln!("lines   {}, none of them QC", self.lines),
         }
+        // Before the image has started, the counter's memory holds anything.
         match board.variable("vrduino_dropped_lines") {
-            Some(count) => eprintln!("dropped {count} lines, for want of a reader"),
+            Some(count) if self.lines > 0 => {
+                eprintln!("dropped {count} lines, for want of a reader")
+            }
+            Some(_) => {}
             None => eprintln!("dropped unknown: the image has no counter that the emulator knows"),
         }
         eprintln!("resets  {}", board.resets());
