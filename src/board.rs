@@ -22,13 +22,11 @@ pub mod usb;
 
 pub mod watchdog;
 
-use core::fmt::{self, Write};
-
 use cortex_m::peripheral::NVIC;
 use mk20dx_hal::pac;
 use vrduino::sensor::RawSample;
 use vrduino::tracker::Health;
-use vrduino::wire::{self, Line};
+use vrduino::wire;
 
 use breadcrumb::Stage;
 use clock::Time;
@@ -114,7 +112,7 @@ impl Board {
 
     /// Tells the host what is wrong.
     pub fn report(&mut self, fault: Fault) {
-        self.usb.send(&message(format_args!("error: {fault}")));
+        self.usb.send(&wire::text(format_args!("error: {fault}")));
         self.fault = Some(fault);
     }
 
@@ -143,17 +141,9 @@ impl Board {
             .send(&wire::text(concat!("vrduino ", env!("CARGO_PKG_VERSION"))));
         if let Some(last_life) = self.last_life {
             self.usb
-                .send(&message(format_args!("warning: {last_life}")));
+                .send(&wire::text(format_args!("warning: {last_life}")));
         }
     }
-}
-
-/// A line of text; what does not fit is cut off.
-fn message(arguments: fmt::Arguments) -> Line {
-    let mut text = heapless::String::<160>::new();
-    // An overlong message is worth more cut short than not at all.
-    let _ = text.write_fmt(arguments);
-    wire::text(&text)
 }
 
 /// Lets `interrupt` through with `priority`, of which the upper four bits count.

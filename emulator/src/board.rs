@@ -9,7 +9,7 @@ use crate::image::Image;
 use crate::motion::Motion;
 use crate::mpu9250::Mpu9250;
 use crate::peripherals::rcm::Cause;
-use crate::time::{self, MILLISECOND, SECOND, Ticks};
+use crate::time::{self, SECOND, Ticks};
 
 /// How the board is put together.
 pub struct Setup {
@@ -148,23 +148,6 @@ impl Board {
         }
     }
 
-    /// Runs for `seconds` of emulated time.
-    pub fn run_seconds(&mut self, seconds: f64) {
-        self.run(time::ticks(seconds));
-    }
-
-    /// Runs until `done` says so, looked at every millisecond, for `limit` at most; tells whether it was done.
-    pub fn run_until(&mut self, limit: Ticks, mut done: impl FnMut(&mut Board) -> bool) -> bool {
-        let until = self.now + limit;
-        while !done(self) {
-            if self.now >= until {
-                return false;
-            }
-            self.run(MILLISECOND);
-        }
-        true
-    }
-
     fn step(&mut self) {
         let cycles = self.cpu.step();
         self.instructions += 1;
@@ -287,11 +270,6 @@ impl Board {
     /// next event, which is a frame away at most.
     pub fn chip_quietly(&mut self) -> MutexGuard<'_, Chip> {
         self.shared.chip()
-    }
-
-    /// The processor.
-    pub fn cpu(&self) -> &Cpu {
-        &self.cpu
     }
 
     /// Makes the program continue at `address`, awake.

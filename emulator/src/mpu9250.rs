@@ -66,11 +66,10 @@ pub struct Mpu9250 {
     clock_error: f64,
     ready_at: Ticks,
     /// Since when samples are taken, and how many there were.
-    sampling_since: Option<Ticks>,
+    sampling_since: Ticks,
     samples: u64,
     pointer: usize,
     first_byte: bool,
-    reading: bool,
     /// Present faults.
     pub faults: Faults,
     /// Every burst from INT_STATUS on, once recording was asked for.
@@ -97,11 +96,10 @@ impl Mpu9250 {
             motion,
             clock_error,
             ready_at: START_UP,
-            sampling_since: None,
+            sampling_since: 0,
             samples: 0,
             pointer: 0,
             first_byte: false,
-            reading: false,
             faults: Faults::default(),
             recording: None,
             burst: None,
@@ -114,7 +112,7 @@ impl Mpu9250 {
         self.registers = [0; 128];
         self.registers[PWR_MGMT_1] = 0x01;
         self.registers[WHO_AM_I] = self.who_am_i;
-        self.sampling_since = Some(now);
+        self.sampling_since = now;
         self.samples = 0;
     }
 
@@ -138,9 +136,7 @@ impl Mpu9250 {
 
     /// Takes the samples that are due; only the last of them is ever seen.
     fn advance(&mut self, now: Ticks) {
-        let Some(since) = self.sampling_since else {
-            return;
-        };
+        let since = self.sampling_since;
         if self.faults.frozen || self.registers[PWR_MGMT_1] & SLEEP != 0 {
             return;
         }
@@ -204,7 +200,7 @@ impl Mpu9250 {
             _ => {
                 self.registers[register] = value;
                 if [SMPLRT_DIV, CONFIG, GYRO_CONFIG, PWR_MGMT_1].contains(&register) {
-                    self.sampling_since = Some(now);
+                    self.sampling_since = now;
                     self.samples = 0;
                 }
             }
@@ -227,13 +223,12 @@ impl Target for Mpu9250 {
         if self.faults.absent || byte >> 1 != ADDRESS || now < self.ready_at {
             return false;
         }
-        self.reading = byte & 1 != 0;
         self.first_byte = true;
         self.advance(now);
         // The output registers do not change while the serial interface is busy (specification 4.16).
         self.shadow
             .copy_from_slice(&self.registers[ACCEL_XOUT_H..=GYRO_ZOUT_L]);
-        if self.reading && self.pointer == INT_STATUS {
+        if byte & 1 != 0 && self.pointer == INT_STATUS {
             self.burst = Some((now, Vec::with_capacity(15)));
         }
         true
@@ -266,6 +261,5 @@ impl Target for Mpu9250 {
 
     fn stop(&mut self) {
         self.end_burst();
-        self.reading = false;
     }
 }

@@ -26,9 +26,10 @@ use vrduino::wire::Line;
 use super::breadcrumb::{self, Stage};
 use bus::Bus;
 
-/// Lines that may wait for the host: 80 ms at the default rate, so that a host which comes back soon
-/// has missed nothing, and one which comes back later gets nothing old.
-const WAITING_LINES: usize = 8;
+/// Lines that may wait for the host: an INFO block with a verdict on the bias is ten at once. At the
+/// default rate these are 160 ms, so a host which comes back soon has missed nothing, and one which
+/// comes back later gets little that is old.
+const WAITING_LINES: usize = 16;
 /// Keys that may wait for the main program.
 const WAITING_KEYS: usize = 64;
 /// A packet shorter than the endpoint's 64 bytes ends a transfer by itself.

@@ -143,7 +143,6 @@ impl UsbController {
     /// Whether the controller asks for its interrupt.
     pub fn interrupt(&self) -> bool {
         self.istat & self.inten != 0
-            || (self.istat & istat::ERROR != 0 && self.inten & istat::ERROR != 0)
     }
 
     /// The host resets the bus.

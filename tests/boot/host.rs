@@ -1,0 +1,136 @@
+//! The serial port as a PC sees it.
+
+use vrduino_emulator::host::{Outcome, Request};
+use vrduino_emulator::motion::Motion;
+use vrduino_emulator::motion::turns::Turns;
+
+use crate::run::{PRINTED, Run, Y, degrees_between};
+
+#[test]
+fn a_strict_host_enumerates_the_board_as_a_teensy_and_finds_nothing_to_object_to() {
+    let mut run = Run::still();
+    run.seconds(2.0);
+    let chip = run.board.chip();
+    let device = chip.host.identity().expect("the device is configured");
+    assert_eq!((device.vendor, device.product), (0x16C0, 0x0483));
+    assert_eq!(device.manufacturer, "Teensyduino");
+    assert_eq!(chip.host.complaints, [""; 0]);
+    assert_eq!(chip.usb.complaints, [""; 0]);
+}
+
+#[test]
+fn a_host_that_stops_reading_costs_lines_but_no_samples() {
+    let motion = || Turns::new(2.5, 0.2).turn(Y, 90.0, 1.0);
+    let mut run = Run::moved_by(motion());
+    run.seconds(2.0);
+    run.board.chip().host.set_reading(false);
+    run.seconds(2.0);
+    run.board.chip().host.set_reading(true);
+    run.seconds(0.3);
+    let dropped = run.variable("vrduino_dropped_lines");
+    assert!(
+        (150..=200).contains(&dropped),
+        "{dropped} lines dropped in 2 s"
+    );
+    // Whole lines, each of a kind that the firmware sends.
+    let (whole, _) = run.text.rsplit_once('\n').expect("lines");
+    for line in whole.lines() {
+        let orientation = line.starts_with("QC ") && line.split(' ').count() == 5;
+        let text = ["vrduino ", "Measuring bias", "bias: "]
+            .iter()
+            .any(|tag| line.starts_with(tag));
+        assert!(orientation || text, "a torn line: {line:?}");
+    }
+    let expected = motion().at(10.0).truth.unwrap();
+    let error = degrees_between(run.last(), expected);
+    assert!(
+        error < 0.2 + PRINTED,
+        "{error}° off: samples were lost with the lines"
+    );
+}
+
+#[test]
+fn the_board_survives_a_bus_reset_a_replug_and_back_to_back_requests() {
+    let mut run = Run::still();
+    run.seconds(1.5);
+    run.board.chip().host.reset_bus();
+    run.seconds(0.4);
+    assert!(
+        run.board.chip().host.is_open(),
+        "not enumerated again after a bus reset"
+    );
+    run.board.chip().host.set_plugged(false);
+    run.seconds(0.3);
+    run.board.chip().host.set_plugged(true);
+    run.seconds(0.5);
+    {
+        let mut chip = run.board.chip();
+        assert!(chip.host.is_open(), "not enumerated again after a replug");
+        for _ in 0..5 {
+            // One that must be refused between two that must be answered.
+            chip.host.request(Request::read(0x80, 6, 0x0100, 0, 18));
+            chip.host.request(Request::read(0x80, 6, 0x0600, 0, 10));
+            chip.host.request(Request::write(
+                0x21,
+                0x20,
+                0,
+                0,
+                &[0x80, 0x25, 0, 0, 0, 0, 8],
+            ));
+            chip.host.request(Request::read(0xA1, 0x21, 0, 0, 7));
+        }
+    }
+    run.seconds(0.2);
+    let outcomes = run.board.chip().host.take_outcomes();
+    assert_eq!(outcomes.len(), 20);
+    for (request, outcome) in &outcomes {
+        match (request.setup[1], request.setup[3], outcome) {
+            (6, 1, Outcome::Done(descriptor)) => assert_eq!(descriptor.len(), 18),
+            (6, 6, Outcome::Stalled) => {}
+            (0x20, _, Outcome::Done(_)) => {}
+            (0x21, _, Outcome::Done(coding)) => assert_eq!(coding[..4], [0x80, 0x25, 0, 0]),
+            _ => panic!("{request:02x?} ended with {outcome:?}"),
+        }
+    }
+    let before = run.orientations.len();
+    run.seconds(0.5);
+    assert!(
+        run.orientations.len() > before + 40,
+        "the stream has not gone on"
+    );
+    assert_eq!(run.board.chip().host.complaints, [""; 0]);
+    assert_eq!(run.board.resets(), 0);
+}
+
+#[test]
+fn keys_choose_what_is_streamed() {
+    let mut run = Run::still();
+    run.seconds(1.5);
+    for (key, tag) in [
+        ("1", "FLAT "),
+        ("2", "EA "),
+        ("3", "GYR: "),
+        ("4", "ACC: "),
+        ("0", "nReads/sec: "),
+    ] {
+        run.forget();
+        run.board.chip().host.send(key.as_bytes());
+        run.wait_for(tag, 1.5);
+    }
+    run.forget();
+    run.board.chip().host.send(b"b5");
+    run.wait_for("Measuring bias", 0.5);
+    run.wait_for("(still)", 2.0);
+    run.wait_for("QC ", 0.5);
+}
+
+#[test]
+fn reset_brings_the_heading_back_to_zero_and_keeps_the_tilt() {
+    let motion = Turns::new(2.0, 5.0).turn(Y, 60.0, 0.5);
+    let mut run = Run::moved_by(motion);
+    run.seconds(3.0);
+    assert!(degrees_between(run.last(), [1.0, 0.0, 0.0, 0.0]) > 55.0);
+    run.board.chip().host.send(b"r");
+    run.seconds(0.1);
+    assert!(degrees_between(run.last(), [1.0, 0.0, 0.0, 0.0]) < 0.5);
+}

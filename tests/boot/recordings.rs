@@ -1,0 +1,144 @@
+//! The stream beside the library and beside recorded motions with an optical reference.
+
+use std::path::PathBuf;
+
+use vrduino::sensor::RawSample;
+use vrduino::tracker::{Health, Tracker};
+use vrduino_emulator::board::Setup;
+use vrduino_emulator::motion;
+use vrduino_emulator::motion::rotation::rotate;
+
+use crate::run::{Run, Y, quaternion};
+
+#[test]
+fn the_stream_agrees_with_the_library_on_the_same_samples_generated() {
+    let mut run = Run::with(Setup::new(motion::built_in()));
+    run.board.chip().sensor.recording = Some(Vec::new());
+    run.seconds(9.0);
+    agrees_with_library(&mut run);
+}
+
+/// Runs the library on the bursts the firmware has read and compares line by line.
+///
+/// Both run the same single-precision code, one compiled for the host and one for a processor without
+/// floating point; the bound is one unit of the last printed digit.
+fn agrees_with_library(run: &mut Run) {
+    let bursts = run
+        .board
+        .chip()
+        .sensor
+        .recording
+        .take()
+        .expect("recording is on");
+    let mut tracker = Tracker::new(vrduino::imu::RANGES);
+    let mut expected = Vec::new();
+    for burst in &bursts {
+        tracker.update(
+            &RawSample::from_burst(&burst.bytes),
+            &Health::default(),
+            &mut |line| expected.extend(quaternion(line.trim_end())),
+        );
+    }
+    assert_eq!(run.variable("vrduino_dropped_lines"), 0);
+    let compared = run.orientations.len();
+    assert!(compared > 500, "only {compared} lines to compare");
+    assert!(
+        expected.len().abs_diff(compared) <= 2,
+        "{} against {compared}",
+        expected.len()
+    );
+    for (index, ((at, streamed), expected)) in run.orientations.iter().zip(&expected).enumerate() {
+        for (a, b) in streamed.iter().zip(expected) {
+            assert!(
+                (a - b).abs() <= 0.001 + 1e-9,
+                "line {index} at {at} s: {streamed:?} instead of {expected:?}"
+            );
+        }
+    }
+}
+
+/// Samples from the start of movement on that are compared.
+const MOVEMENT: f64 = 22.0;
+
+fn follows_recording(name: &str) {
+    let folder = std::env::var_os("VRDUINO_MOTIONS").expect("VRDUINO_MOTIONS names a folder");
+    let path = PathBuf::from(folder).join(name);
+    let bytes = std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    // The recording's own marks (layout: 64 bytes of header, 28 a sample, the last two are flags).
+    let moving: Vec<bool> = bytes[64..]
+        .chunks_exact(28)
+        .map(|record| record[26] & 1 != 0)
+        .collect();
+    let rate = 2000.0 / 7.0;
+    let begin = moving
+        .iter()
+        .position(|&moving| moving)
+        .expect("there is movement") as f64
+        / rate;
+    let start = begin - 3.0;
+    let in_motion = moving
+        .iter()
+        .skip((begin * rate) as usize)
+        .take((MOVEMENT * rate) as usize)
+        .filter(|&&moving| moving)
+        .count() as f64
+        / rate;
+    assert!(
+        in_motion >= 20.0,
+        "{name} moves for {in_motion} s of {MOVEMENT} only"
+    );
+
+    let open = || motion::skip(motion::open(&path).unwrap(), start).unwrap();
+    let mut truth = open();
+    let mut run = Run::with(Setup::new(open()));
+    run.board.chip().sensor.recording = Some(Vec::new());
+    run.seconds(3.0 + MOVEMENT);
+
+    // Inclination against the optical reference: where the two think up is, seen from the body.
+    let errors: Vec<f64> = run
+        .orientations
+        .iter()
+        .filter_map(|&(at, streamed)| {
+            let reference = truth.at(at - 0.002).truth?;
+            let (a, b) = (up_in_body(streamed), up_in_body(reference));
+            let cosine: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+            Some(cosine.clamp(-1.0, 1.0).acos().to_degrees())
+        })
+        .collect();
+    assert!(
+        errors.len() > 1800,
+        "{name}: only {} references",
+        errors.len()
+    );
+    let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+    eprintln!(
+        "{name}: inclination {rms:.2}° rms over {:.1} s",
+        errors.len() as f64 / 100.0
+    );
+    // The course filter at its best time constant has 4.2° on average over whole recordings.
+    assert!(rms < 8.0, "{name}: inclination {rms}° rms");
+    agrees_with_library(&mut run);
+}
+
+fn up_in_body(body_to_world: [f64; 4]) -> [f64; 3] {
+    let [w, x, y, z] = body_to_world;
+    rotate([w, -x, -y, -z], Y)
+}
+
+#[test]
+#[ignore = "needs VRDUINO_MOTIONS"]
+fn follows_a_recorded_slow_rotation() {
+    follows_recording("02_undisturbed_slow_rotation_B.imub");
+}
+
+#[test]
+#[ignore = "needs VRDUINO_MOTIONS"]
+fn follows_a_recorded_fast_rotation() {
+    follows_recording("06_undisturbed_fast_rotation_A.imub");
+}
+
+#[test]
+#[ignore = "needs VRDUINO_MOTIONS"]
+fn follows_a_recorded_fast_translation() {
+    follows_recording("15_undisturbed_fast_translation_A.imub");
+}
