@@ -10,6 +10,7 @@ use crate::motion::Motion;
 use crate::mpu9250::Mpu9250;
 use crate::peripherals::rcm::Cause;
 use crate::time::{self, SECOND, Ticks};
+use crate::witness::{Offence, Stop, Trap};
 
 /// How the board is put together.
 pub struct Setup {
@@ -19,16 +20,25 @@ pub struct Setup {
     pub who_am_i: u8,
     /// Relative error of the sensor's oscillator (specification: within ±1 %).
     pub sensor_clock_error: f64,
+    /// Traps that do not stop the run: the board goes on as silicon would.
+    pub allowed: Vec<Trap>,
 }
 
 impl Setup {
-    /// A board with a perfect MPU-9250 moved by `motion`.
+    /// A board with a perfect MPU-9250 moved by `motion`; every trap stops it.
     pub fn new(motion: Box<dyn Motion>) -> Setup {
         Setup {
             motion,
             who_am_i: 0x71,
             sensor_clock_error: 0.0,
+            allowed: Vec::new(),
         }
+    }
+
+    /// The same board, which goes on as silicon would after stepping into one of these traps.
+    pub fn allowing(mut self, traps: &[Trap]) -> Setup {
+        self.allowed.extend(traps);
+        self
     }
 }
 
@@ -96,6 +106,10 @@ pub struct Board {
     instructions: u64,
     resets: u32,
     events: Vec<Event>,
+    allowed: Vec<Trap>,
+    stop: Option<Stop>,
+    /// Address of the instruction that is being executed, or was last.
+    pc: u32,
 }
 
 impl Board {
@@ -130,13 +144,17 @@ impl Board {
             instructions: 0,
             resets: 0,
             events: Vec::new(),
+            allowed: setup.allowed,
+            stop: None,
+            pc: 0,
         }
     }
 
-    /// Runs for `span`, or a little longer: the last instruction is finished.
+    /// Runs for `span`, or a little longer: the last instruction is finished. A board that has stopped
+    /// ([`Board::stop`]) does not run any more.
     pub fn run(&mut self, span: Ticks) {
         let until = self.now.saturating_add(span);
-        while self.now < until {
+        while self.now < until && self.stop.is_none() {
             if self.now >= self.next_event || self.shared.touched.load(Ordering::Relaxed) {
                 self.service();
             }
@@ -149,6 +167,7 @@ impl Board {
     }
 
     fn step(&mut self) {
+        self.pc = self.cpu.pc();
         let cycles = self.cpu.step();
         self.instructions += 1;
         let ticks = self.pass(cycles);
@@ -203,14 +222,14 @@ impl Board {
         let shared = Arc::clone(&self.shared);
         let mut chip = shared.chip();
         chip.advance();
-        for fault in chip.bus_faults.drain(..) {
-            let place = self.place();
-            self.events.push(Event {
-                at: self.now,
-                what: format!("bus fault, {fault}; at {place}"),
-            });
+        let offences = chip.witness.take();
+        let reset = chip.reset_wanted.take();
+        if !offences.is_empty() {
+            drop(chip);
+            self.judge(offences);
+            chip = shared.chip();
         }
-        if let Some((cause, why)) = chip.reset_wanted.take() {
+        if let Some((cause, why)) = reset {
             drop(chip);
             self.reset(cause, why);
             return;
@@ -230,12 +249,36 @@ impl Board {
         self.next_event = chip.next_event();
     }
 
+    /// Stops at the first offence that is not allowed; the others become events.
+    fn judge(&mut self, offences: Vec<Offence>) {
+        let place = self.place_of(self.pc);
+        for Offence { trap, what } in offences {
+            if self.allowed.contains(&trap) {
+                let what = format!("{trap}: {what}; at {place}");
+                self.events.push(Event { at: self.now, what });
+            } else {
+                self.stop.get_or_insert(Stop {
+                    trap,
+                    what,
+                    at: self.now,
+                    pc: self.pc,
+                    place: place.clone(),
+                });
+            }
+        }
+    }
+
+    /// Why the board runs no more, if it stepped into a trap that was not allowed.
+    pub fn stop(&self) -> Option<&Stop> {
+        self.stop.as_ref()
+    }
+
     fn reset(&mut self, cause: Cause, why: &str) {
         let by = match cause {
             Cause::Watchdog => "the watchdog resets the chip: ",
             _ => "the chip is reset: ",
         };
-        let what = format!("{by}{why}; the program was at {}", self.place());
+        let what = format!("{by}{why}; the program was at {}", self.place_of(self.pc));
         self.events.push(Event { at: self.now, what });
         self.resets += 1;
         let mut chip = self.shared.chip();
@@ -249,9 +292,8 @@ impl Board {
         self.asleep = false;
     }
 
-    /// Where the program is, for people.
-    fn place(&self) -> String {
-        let pc = self.cpu.pc();
+    /// An address for people.
+    fn place_of(&self, pc: u32) -> String {
         match self.image.symbol_at(pc) {
             Some((name, offset)) => format!("{pc:#010x} ({name} + {offset:#x})"),
             None => format!("{pc:#010x}"),

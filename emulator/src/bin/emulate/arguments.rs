@@ -6,6 +6,7 @@ use std::str::FromStr;
 use clap::{Parser, ValueEnum};
 use vrduino_emulator::board::Board;
 use vrduino_emulator::time::{self, Ticks};
+use vrduino_emulator::witness::Trap;
 
 /// Boots the tracker's image on an emulated VRduino board and prints what it streams.
 ///
@@ -45,6 +46,15 @@ pub struct Arguments {
     #[arg(long, value_name = "FAULT[@S[-T]]", help = FAULT_HELP)]
     pub fault: Vec<Fault>,
 
+    /// Go on as silicon would after stepping into this trap, instead of stopping with exit code 3; `all` allows
+    /// every one; may be given more than once
+    #[arg(long, value_name = "TRAP", value_parser = allowed)]
+    pub allow: Vec<Allowed>,
+
+    /// List the traps, each with the rule it stands for, and end
+    #[arg(long)]
+    pub traps: bool,
+
     /// The sensor's WHO_AM_I
     #[arg(long, value_name = "BYTE", default_value = "0x71", value_parser = byte)]
     pub who_am_i: u8,
@@ -81,6 +91,17 @@ fn percent(text: &str) -> Result<f64, String> {
 fn byte(text: &str) -> Result<u8, String> {
     let digits = text.strip_prefix("0x").unwrap_or(text);
     u8::from_str_radix(digits, 16).map_err(|_| "give a byte in hexadecimal, such as 0x71".into())
+}
+
+/// One trap, or all.
+#[derive(Debug, Clone, Copy)]
+pub struct Allowed(Option<Trap>);
+
+fn allowed(text: &str) -> Result<Allowed, String> {
+    if text == "all" {
+        return Ok(Allowed(None));
+    }
+    text.parse().map(|trap| Allowed(Some(trap)))
 }
 
 /// Keys to type, and when.
@@ -160,6 +181,17 @@ pub struct Script {
 }
 
 impl Arguments {
+    /// The traps that do not stop the run.
+    pub fn allowed(&self) -> Vec<Trap> {
+        if self.allow.iter().any(|Allowed(trap)| trap.is_none()) {
+            return Trap::ALL.to_vec();
+        }
+        self.allow
+            .iter()
+            .filter_map(|Allowed(trap)| *trap)
+            .collect()
+    }
+
     /// Keys and faults as a script.
     pub fn script(&self) -> Script {
         Script {

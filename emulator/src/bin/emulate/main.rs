@@ -18,6 +18,7 @@ use vrduino_emulator::firmware;
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::{self, Motion};
 use vrduino_emulator::time::{self, MILLISECOND, Ticks};
+use vrduino_emulator::witness::{Stop, Trap};
 
 use arguments::Arguments;
 use port::PseudoTerminal;
@@ -25,9 +26,23 @@ use report::Report;
 
 type Error = Box<dyn std::error::Error>;
 
+/// Exit code of a run that ended in a trap.
+const TRAPPED: u8 = 3;
+
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
+    let arguments = Arguments::parse();
+    if arguments.traps {
+        for trap in Trap::ALL {
+            println!("{trap}\n    {}", trap.rule());
+        }
+        return ExitCode::SUCCESS;
+    }
+    match run(&arguments) {
+        Ok(None) => ExitCode::SUCCESS,
+        Ok(Some(stop)) => {
+            eprintln!("\n{stop}");
+            ExitCode::from(TRAPPED)
+        }
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::FAILURE
@@ -35,7 +50,8 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<(), Error> {
+/// Runs until the end, the limit, Ctrl-C, or a trap, which it returns.
+fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     // What the user has given is looked at first: no point in building before a wrong file name.
     let motion = choose_motion(arguments)?;
     let (description, ends) = (motion.describe(), motion.duration());
@@ -48,6 +64,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         motion,
         who_am_i: arguments.who_am_i,
         sensor_clock_error: arguments.sensor_clock / 100.0,
+        allowed: arguments.allowed(),
     };
     let mut board = Board::new(image, setup);
     let terminal = PseudoTerminal::open()?;
@@ -68,17 +85,20 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         paced_since: None,
     };
     let mut script = arguments.script();
-    while limit.is_none_or(|limit| board.now() < limit) && !interrupted.load(Ordering::Relaxed) {
+    while limit.is_none_or(|limit| board.now() < limit)
+        && board.stop().is_none()
+        && !interrupted.load(Ordering::Relaxed)
+    {
         script.apply(&mut board);
         board.run(MILLISECOND.min(limit.map_or(MILLISECOND, |limit| limit - board.now())));
         match session.pass_on(&mut board) {
             // Whoever read our output has seen enough.
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(None),
             result => result?,
         }
     }
     session.report.print(&mut board);
-    Ok(())
+    Ok(board.stop().cloned())
 }
 
 /// What moves the sensor, from the chosen start.
