@@ -91,13 +91,15 @@ pub fn is_steady(address: u32) -> bool {
     const FTFL_FSTAT: u32 = 0x4002_0000;
     const USB_ISTAT: u32 = 0x4007_2080;
     const UART0_S1: u32 = 0x4006_A004;
-    const SIM: u32 = 0x4004_7;
+    const SIM: u32 = 0x4004_7000;
+    const GPIO: u32 = 0x400F_F000;
+    let page = address & !0xFFF;
     matches!(
         address,
         I2C0_C1 | I2C0_S | MCG_S | FTFL_FSTAT | USB_ISTAT | UART0_S1
-    ) || address >> 12 == SIM
-        || address >> 12 == SIM + 1
-        || address >> 12 == 0x400F_F
+    ) || page == SIM
+        || page == SIM + 0x1000
+        || page == GPIO
 }
 
 /// Every peripheral, the sensor, and the host.
