@@ -50,7 +50,7 @@ pub struct Arguments {
     #[arg(long)]
     pub pessimistic: bool,
 
-    /// Time the calls of this function, by the end of its path, e.g. Tracker::update
+    /// Time the calls of this function, by the end of its path; else the tracker's filter, Tracker::track
     #[arg(long, value_name = "FUNCTION")]
     pub time: Option<String>,
 

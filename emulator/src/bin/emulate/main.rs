@@ -27,6 +27,9 @@ use report::Report;
 
 type Error = Box<dyn std::error::Error>;
 
+/// The tracker's update of its estimators by one sample: what is timed unless something else is asked for.
+const FILTER: &str = "Tracker::track";
+
 /// Exit code of a run that ended in a trap.
 const TRAPPED: u8 = 3;
 
@@ -61,6 +64,15 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
         None => firmware::build(firmware::BuildOptions { quiet: true })?,
     };
     let image = Image::open(&path)?;
+    if let Some(function) = &arguments.time
+        && image.address_of(function).is_none()
+    {
+        return Err(format!(
+            "the image has no function, or more than one, whose path ends in {function}; compilers merge small \
+             functions into their callers unless they are marked #[inline(never)]"
+        )
+        .into());
+    }
     let setup = Setup {
         motion,
         who_am_i: arguments.who_am_i,
@@ -72,7 +84,7 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
             Pace::Least
         },
         skip_polling: true,
-        timed_function: arguments.time.clone().unwrap_or_default(),
+        timed_function: arguments.time.clone().unwrap_or_else(|| FILTER.into()),
     };
     let mut board = Board::new(image, setup);
     let terminal = PseudoTerminal::open()?;
