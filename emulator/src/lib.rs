@@ -30,4 +30,6 @@ pub mod image;
 
 pub mod firmware;
 
+pub mod random;
+
 pub mod time;
