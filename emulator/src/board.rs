@@ -7,7 +7,7 @@ use crate::chip::{Chip, INTERRUPTS};
 use crate::cpu::{Cpu, PeripheralBus};
 use crate::image::Image;
 use crate::motion::Motion;
-use crate::mpu9250::Mpu9250;
+use crate::mpu9250::{Mpu9250, Part};
 use crate::peripherals::rcm::Cause;
 use crate::time::{self, SECOND, Ticks};
 
@@ -15,10 +15,8 @@ use crate::time::{self, SECOND, Ticks};
 pub struct Setup {
     /// What the sensor experiences, from power-on.
     pub motion: Box<dyn Motion>,
-    /// The sensor's identity: 0x71 is an MPU-9250.
-    pub who_am_i: u8,
-    /// Relative error of the sensor's oscillator (specification: within ±1 %).
-    pub sensor_clock_error: f64,
+    /// The individual sensor: what it is, and its errors.
+    pub part: Part,
 }
 
 impl Setup {
@@ -26,8 +24,7 @@ impl Setup {
     pub fn new(motion: Box<dyn Motion>) -> Setup {
         Setup {
             motion,
-            who_am_i: 0x71,
-            sensor_clock_error: 0.0,
+            part: Part::perfect(),
         }
     }
 }
@@ -102,7 +99,7 @@ impl Board {
     /// A board at power-on with `image` in its flash.
     pub fn new(image: Image, setup: Setup) -> Board {
         let configuration = [image.flash[0x40C], image.flash[0x40D]];
-        let sensor = Mpu9250::new(setup.motion, setup.who_am_i, setup.sensor_clock_error);
+        let sensor = Mpu9250::new(Arc::from(setup.motion), setup.part);
         let chip = Chip::new(sensor, configuration);
         let ram = chip.ram.clone();
         let core_hz = chip.core_hz();

@@ -113,7 +113,7 @@ fn a_moving_start_streams_within_six_seconds_and_says_that_it_has_no_bias() {
 fn the_sensors_own_clock_may_be_one_percent_off() {
     for error in [-0.01, 0.01] {
         let mut setup = Setup::new(Box::new(Turns::new(2.0, 0.3).turn(Y, 90.0, 1.0)));
-        setup.sensor_clock_error = error;
+        setup.part = setup.part.clock_error(error);
         let mut run = Run::with(setup);
         run.seconds(3.3);
         let expected = multiply(

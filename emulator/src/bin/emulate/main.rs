@@ -19,7 +19,7 @@ use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::{self, Motion};
 use vrduino_emulator::time::{self, MILLISECOND, Ticks};
 
-use arguments::Arguments;
+use arguments::{Arguments, PartKind};
 use port::PseudoTerminal;
 use report::Report;
 
@@ -46,8 +46,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let image = Image::open(&path)?;
     let setup = Setup {
         motion,
-        who_am_i: arguments.who_am_i,
-        sensor_clock_error: arguments.sensor_clock / 100.0,
+        part: arguments.part(),
     };
     let mut board = Board::new(image, setup);
     let terminal = PseudoTerminal::open()?;
@@ -85,7 +84,9 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
 fn choose_motion(arguments: &Arguments) -> Result<Box<dyn Motion>, Error> {
     let motion = match &arguments.motion {
         Some(path) => motion::open(path)?,
-        None => motion::built_in(),
+        // A part with errors of its own needs none added to what it feels.
+        None if arguments.part == PartKind::Perfect => motion::built_in(),
+        None => Box::new(motion::Head::new()),
     };
     Ok(motion::skip(motion, arguments.start)?)
 }
