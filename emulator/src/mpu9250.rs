@@ -27,6 +27,8 @@ pub mod part;
 
 mod registers;
 
+mod sample;
+
 mod sampling;
 
 mod self_test;
@@ -40,7 +42,7 @@ use std::sync::Arc;
 use crate::motion::Motion;
 use crate::time::{MILLISECOND, Ticks};
 use ak8963::Ak8963;
-use aux_master::{AuxMaster, AuxiliaryBus};
+use aux_master::AuxMaster;
 use complaint::{Complaint, Complaints};
 use fifo::Fifo;
 use interrupts::Interrupts;
@@ -70,9 +72,6 @@ const FIFO_ENABLED: u8 = 1 << 6;
 const I2C_MST_EN: u8 = 1 << 5;
 /// BYPASS_EN of INT_PIN_CFG.
 const BYPASS_EN: u8 = 1 << 1;
-/// WAIT_FOR_ES and SLV_3_FIFO_EN of I2C_MST_CTRL.
-const WAIT_FOR_ES: u8 = 1 << 6;
-const SLV_3_FIFO_EN: u8 = 1 << 5;
 /// FIFO_MODE of CONFIG.
 const FIFO_MODE: u8 = 1 << 6;
 /// ACCEL_INTEL_EN and ACCEL_INTEL_MODE of MOT_DETECT_CTRL.
@@ -180,7 +179,7 @@ impl Mpu9250 {
         self.fifo = Fifo::default();
         self.interrupts = Interrupts::default();
         self.ready_with_external = None;
-        self.aux.reset(now);
+        self.aux.clear();
         self.started = Started {
             gyro: now + GYRO_START,
             accel: now + ACCEL_COLD_START,
@@ -224,11 +223,7 @@ impl Mpu9250 {
         }
         self.take_steps(now);
         self.aux.finish(&mut self.registers, now);
-        if let Some(at) = self.ready_with_external.filter(|&at| at <= now) {
-            self.ready_with_external = None;
-            self.interrupts
-                .raise(interrupts::RAW_DATA_RDY, &self.registers, at);
-        }
+        self.announce_external(now);
     }
 
     fn take_steps(&mut self, now: Ticks) {
@@ -266,104 +261,14 @@ impl Mpu9250 {
             || self.registers.has(MOT_DETECT_CTRL, WAKE_ON_MOTION)
     }
 
-    /// Stores a sample.
-    fn sample(&mut self, at: Ticks) {
-        let counts = self.path.counts(&self.registers);
-        let before = [0, 2, 4].map(|offset| self.registers.word(ACCEL_XOUT_H + offset));
-        for (axis, value) in (0..).zip(counts.accel) {
-            self.registers.set_word(ACCEL_XOUT_H + 2 * axis, value);
-        }
-        if self.clock.schedule().mode == Mode::Running {
-            self.registers.set_word(TEMP_OUT_H, counts.temperature);
-            for (axis, value) in (0..).zip(counts.gyro) {
-                self.registers.set_word(GYRO_XOUT_H + 2 * axis, value);
-            }
-        }
-        if self.registers.has(MOT_DETECT_CTRL, WAKE_ON_MOTION) {
-            self.watch_motion(before, counts.accel, at);
-        }
-        self.aux.finish(&mut self.registers, at);
-        self.store_in_fifo(at);
-        let mut ready_at = at;
-        if self.registers.has(USER_CTRL, I2C_MST_EN) {
-            let mut bus = AuxiliaryBus {
-                magnetometer: self.magnetometer.as_mut(),
-                complaints: &mut self.complaints,
-            };
-            self.aux.sample(&mut self.registers, at, &mut bus);
-            if self.registers.has(I2C_MST_CTRL, WAIT_FOR_ES) {
-                ready_at = self.aux.busy_until().max(at);
-            }
-        }
-        if ready_at > at {
-            self.ready_with_external.get_or_insert(ready_at);
-        } else {
-            self.interrupts
-                .raise(interrupts::RAW_DATA_RDY, &self.registers, at);
-        }
-    }
-
-    /// Wake on motion: any axis has changed by more than the threshold since the sample before (PS 6.1, RM 4.10).
-    fn watch_motion(&mut self, before: [i16; 3], after: [i16; 3], at: Ticks) {
-        /// Weight of WOM_THR (g).
-        const WEIGHT: f64 = 0.004;
-        let counts_per_g = 16_384.0 / f64::from(1 << self.registers.full_scale(ACCEL_CONFIG));
-        let threshold = f64::from(self.registers[WOM_THR]) * WEIGHT * counts_per_g;
-        let moved = before
-            .into_iter()
-            .zip(after)
-            .any(|(before, after)| f64::from(before.abs_diff(after)) > threshold);
-        if moved {
-            self.interrupts.raise(interrupts::WOM, &self.registers, at);
-        }
-    }
-
-    /// Appends the enabled output registers in the order of their numbers (RM 4.11 and 4.37).
-    fn store_in_fifo(&mut self, at: Ticks) {
-        if !self.registers.has(USER_CTRL, FIFO_ENABLED) {
-            return;
-        }
-        let enable = self.registers[FIFO_EN];
-        let mut ranges = Vec::with_capacity(9);
-        if enable & 0x08 != 0 {
-            ranges.push((ACCEL_XOUT_H, 6));
-        }
-        if enable & 0x80 != 0 {
-            ranges.push((TEMP_OUT_H, 2));
-        }
-        for axis in 0..3 {
-            if enable & 0x40 >> axis != 0 {
-                ranges.push((GYRO_XOUT_H + 2 * axis, 2));
-            }
-        }
-        for slave in 0..4 {
-            let enabled = match slave {
-                3 => self.registers.has(I2C_MST_CTRL, SLV_3_FIFO_EN),
-                _ => enable >> slave & 1 != 0,
-            };
-            let (first, length) = self.aux.allocation(slave);
-            if enabled {
-                ranges.push((EXT_SENS_DATA_00 + first, length));
-            }
-        }
-        let keep = self.registers.has(CONFIG, FIFO_MODE);
-        let mut lost = false;
-        for (first, length) in ranges {
-            for byte in self.registers.range(first, length) {
-                lost |= self.fifo.push(*byte, keep);
-            }
-        }
-        if lost {
-            self.interrupts
-                .raise(interrupts::FIFO_OFLOW, &self.registers, at);
-        }
-    }
-
     /// Takes over what was written to the registers that decide how to measure.
     fn follow_registers(&mut self, now: Ticks) {
         let locked = self.locks_at.is_none() && gyro_driven(&self.registers);
         let schedule = Schedule::of(&self.registers, &self.part, locked);
-        self.clock.follow(schedule, now);
+        let stood_still = self.clock.schedule().mode == Mode::Stopped;
+        if self.clock.follow(schedule, now) && stood_still {
+            self.path.settle();
+        }
         self.path
             .configure(&self.registers, schedule, self.clock.since());
     }

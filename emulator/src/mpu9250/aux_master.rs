@@ -85,6 +85,11 @@ impl AuxMaster {
     /// I2C_MST_RST; in mid-transfer the slave hangs (section 4.33).
     pub fn reset(&mut self, now: Ticks) {
         self.hung |= self.is_busy(now);
+        self.clear();
+    }
+
+    /// The state after a reset of the whole die; a slave that hangs does not notice.
+    pub fn clear(&mut self) {
         *self = AuxMaster {
             hung: self.hung,
             ..AuxMaster::default()

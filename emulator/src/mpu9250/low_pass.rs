@@ -59,7 +59,8 @@ const ACCEL: [Response; 8] = [
     response(420.0, 1.38),
 ];
 
-/// ACCEL_FCHOICE_B set.
+/// ACCEL_FCHOICE_B of ACCEL_CONFIG_2, and the response with it.
+pub const ACCEL_FCHOICE_B: u8 = 1 << 3;
 const ACCEL_BYPASSED: Response = response(1046.0, 0.503);
 
 /// The duty-cycled accelerometer (section 4.8, low-power mode).
@@ -85,7 +86,7 @@ pub fn temperature(registers: &Registers) -> Response {
 
 /// The accelerometer's present response.
 pub fn accelerometer(registers: &Registers) -> Response {
-    if registers.has(ACCEL_CONFIG_2, 1 << 3) {
+    if registers.has(ACCEL_CONFIG_2, ACCEL_FCHOICE_B) {
         ACCEL_BYPASSED
     } else {
         ACCEL[usize::from(registers[ACCEL_CONFIG_2] & 7)]

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::low_pass::{self, LowPass, Recurrence};
 use super::part::{Part, REFERENCE_CELSIUS};
 use super::registers::{
-    ACCEL_CONFIG, GYRO_CONFIG, PWR_MGMT_1, PWR_MGMT_2, Registers, XA_OFFSET_H, XG_OFFSET_H,
+    ACCEL_CONFIG, ACCEL_CONFIG_2, GYRO_CONFIG, PWR_MGMT_1, PWR_MGMT_2, Registers, XA_OFFSET_H,
+    XG_OFFSET_H,
 };
 use super::sampling::{Mode, STANDBY, Schedule};
 use super::self_test;
@@ -55,6 +56,9 @@ pub struct SignalPath {
     accel: LowPass<3>,
     temperature: LowPass<1>,
     recurrences: [Recurrence; 3],
+    /// The accelerometer's output, renewed every so many steps: 1 kHz behind its filter, 4 kHz without.
+    accel_output: [f64; 3],
+    accel_steps: u64,
     mode: Mode,
     /// Noise of one step over the noise density: √(step rate / 2).
     noise_bandwidth: f64,
@@ -71,6 +75,8 @@ impl SignalPath {
             accel: LowPass::settled(),
             temperature: LowPass::settled(),
             recurrences: [low_pass::ACCEL_LOW_POWER.at(8_000.0); 3],
+            accel_output: [0.0; 3],
+            accel_steps: 1,
             mode: Mode::Stopped,
             noise_bandwidth: 0.0,
             noise_seed: 0,
@@ -86,6 +92,7 @@ impl SignalPath {
             let response = low_pass::ACCEL_LOW_POWER;
             self.noise_bandwidth = (response.bandwidth * std::f64::consts::FRAC_PI_2).sqrt();
             self.recurrences[1].latency = response.delay;
+            self.accel_steps = 1;
         } else {
             self.noise_bandwidth = (hz / 2.0).sqrt();
             self.recurrences = [
@@ -94,6 +101,8 @@ impl SignalPath {
                 low_pass::temperature(registers),
             ]
             .map(|response| response.at(hz));
+            let bypassed = registers.has(ACCEL_CONFIG_2, low_pass::ACCEL_FCHOICE_B);
+            self.accel_steps = (hz / if bypassed { 4_000.0 } else { 1_000.0 }) as u64;
         }
         self.noise_seed = mix(self.part.seed ^ mix(since));
     }
@@ -102,6 +111,7 @@ impl SignalPath {
     pub fn settle(&mut self) {
         self.gyro = LowPass::settled();
         self.accel = LowPass::settled();
+        self.accel_output = [0.0; 3];
         self.temperature = LowPass::settled();
     }
 
@@ -135,6 +145,9 @@ impl SignalPath {
             }
             self.accel
                 .step(self.recurrences[1], sum(input, actuation, noise));
+            if index.is_multiple_of(self.accel_steps) {
+                self.accel_output = self.accel.outputs();
+            }
         }
         if self.mode == Mode::Cycle {
             return;
@@ -169,7 +182,7 @@ impl SignalPath {
         let standby = registers.has(PWR_MGMT_1, STANDBY);
         let gyro_scale = f64::from(1u32 << registers.full_scale(GYRO_CONFIG));
         let accel_scale = f64::from(1u32 << registers.full_scale(ACCEL_CONFIG));
-        let (gyro, accel) = (self.gyro.outputs(), self.accel.outputs());
+        let (gyro, accel) = (self.gyro.outputs(), self.accel_output);
         let [celsius] = self.temperature.outputs();
         Counts {
             accel: std::array::from_fn(|axis| {
