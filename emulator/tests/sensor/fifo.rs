@@ -21,7 +21,7 @@ fn filling(mut driver: Driver, enable: u8) -> Driver {
 fn still() -> Driver {
     Driver::perfect(constant(Instant {
         rate: [0.1, 0.2, -0.3],
-        force: [0.5 * G, -1.0 * G, 1.5 * G],
+        force: [0.5 * G, -G, 1.5 * G],
         ..NOTHING
     }))
 }
