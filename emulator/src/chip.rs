@@ -15,6 +15,7 @@ use crate::peripherals::sim::SystemIntegration;
 use crate::peripherals::usbotg::UsbController;
 use crate::peripherals::wdog::Watchdog;
 use crate::time::{self, NEVER, Ticks};
+use crate::witness::{Trap, Witness};
 
 /// A 4 KiB slot of the peripheral bridges (K20 manual, section 4.5).
 struct Slot {
@@ -82,6 +83,25 @@ pub const INTERRUPTS: [u16; 6] = [
     irq::USBOTG,
 ];
 
+/// Whether reading `address` changes nothing, and finds the same until the next event or access.
+pub fn is_steady(address: u32) -> bool {
+    const I2C0_C1: u32 = 0x4006_6002;
+    const I2C0_S: u32 = 0x4006_6003;
+    const MCG_S: u32 = 0x4006_4006;
+    const FTFL_FSTAT: u32 = 0x4002_0000;
+    const USB_ISTAT: u32 = 0x4007_2080;
+    const UART0_S1: u32 = 0x4006_A004;
+    const SIM: u32 = 0x4004_7000;
+    const GPIO: u32 = 0x400F_F000;
+    let page = address & !0xFFF;
+    matches!(
+        address,
+        I2C0_C1 | I2C0_S | MCG_S | FTFL_FSTAT | USB_ISTAT | UART0_S1
+    ) || page == SIM
+        || page == SIM + 0x1000
+        || page == GPIO
+}
+
 /// Every peripheral, the sensor, and the host.
 #[derive(Debug)]
 pub struct Chip {
@@ -110,8 +130,8 @@ pub struct Chip {
     flash_configuration: [u8; 2],
     /// Why the chip has to be reset now.
     pub reset_wanted: Option<(Cause, &'static str)>,
-    /// Accesses that ended in a bus fault, in words.
-    pub bus_faults: Vec<String>,
+    /// What the program did that silicon does not forgive.
+    pub witness: Witness,
 }
 
 impl Chip {
@@ -137,7 +157,7 @@ impl Chip {
             rest: RegisterFile::default(),
             flash_configuration,
             reset_wanted: None,
-            bus_faults: Vec::new(),
+            witness: Witness::default(),
         }
     }
 
@@ -170,6 +190,12 @@ impl Chip {
         self.sim.divide(self.clocks.output_hz(self.now)).0
     }
 
+    /// The core clock over the flash clock.
+    pub fn flash_ratio(&self) -> u32 {
+        let (core, _, flash) = self.sim.divide(self.clocks.output_hz(self.now));
+        core.checked_div(flash).unwrap_or(1).max(1)
+    }
+
     fn bus_hz(&self) -> u32 {
         self.sim.divide(self.clocks.output_hz(self.now)).1
     }
@@ -195,8 +221,8 @@ impl Chip {
     /// Lets everything happen that is due at `self.now`.
     pub fn advance(&mut self) {
         let (now, bus_hz) = (self.now, self.bus_hz());
-        if let Some(why) = self.watchdog.expired(now, bus_hz) {
-            self.reset_wanted.get_or_insert((Cause::Watchdog, why));
+        if let Some(trap) = self.watchdog.expired(now, bus_hz) {
+            self.watchdog_bites(trap);
         }
         self.timer.advance(now, bus_hz);
         self.i2c.advance(now, &self.pins, &mut self.sensor);
@@ -204,6 +230,12 @@ impl Chip {
             let clocked = self.usb_clocked();
             self.host.advance(now, clocked, &mut self.usb, &self.ram);
         }
+    }
+
+    fn watchdog_bites(&mut self, trap: Trap) {
+        self.witness.saw(trap, "the watchdog resets the chip");
+        self.reset_wanted
+            .get_or_insert((Cause::Watchdog, trap.rule()));
     }
 
     /// Whether interrupt `number` is asserted.
@@ -219,25 +251,33 @@ impl Chip {
         let page = address >> 12 & 0xFF;
         let what = if write { "write to" } else { "read of" };
         let Some(slot) = SLOTS.iter().find(|slot| slot.page == page) else {
-            self.bus_faults
-                .push(format!("{what} {address:#010x}: nothing is mapped there"));
+            self.witness.saw(
+                Trap::UnmappedPeripheral,
+                format!("{what} {address:#010x}: this chip has no peripheral there"),
+            );
             return None;
         };
         if slot.gate.is_some_and(|(n, bit)| !self.sim.gate(n, bit)) {
             let (n, bit) = slot.gate.unwrap_or_default();
-            self.bus_faults.push(format!(
-                "{what} {address:#010x} ({}): its clock is off, bit {bit} of SIM_SCGC{n}",
-                slot.name
-            ));
+            self.witness.saw(
+                Trap::ClockGated,
+                format!(
+                    "{what} {address:#010x} ({}) while its clock is off: bit {bit} of SIM_SCGC{n} is 0",
+                    slot.name
+                ),
+            );
             return None;
         }
         if slot.width != 0 && slot.width != width {
-            self.bus_faults.push(format!(
-                "{what} {address:#010x} ({}): {} bits wide, its registers have {}",
-                slot.name,
-                width * 8,
-                slot.width * 8
-            ));
+            self.witness.saw(
+                Trap::AccessWidth,
+                format!(
+                    "{what} {address:#010x} ({}), {} bits wide; its registers have {}",
+                    slot.name,
+                    width * 8,
+                    slot.width * 8
+                ),
+            );
             return None;
         }
         Some(slot)
@@ -273,11 +313,14 @@ impl Chip {
             0x37 => self.timer.write(offset, value, now, bus_hz),
             0x47 | 0x48 => self.sim.write(address - 0x4004_7000, value),
             page @ 0x49..=0x4D => self.pins.write_port(page as usize - 0x49, offset, value),
-            0x52 => {
-                if let Err(why) = self.watchdog.write(offset, value as u16, now, bus_hz) {
-                    self.reset_wanted.get_or_insert((Cause::Watchdog, why));
-                }
-            }
+            0x52 => match self.watchdog.write(offset, value as u16, now, bus_hz) {
+                Ok(()) => {}
+                Err(Trap::WatchdogLocked) => self.witness.saw(
+                    Trap::WatchdogLocked,
+                    format!("write of {value:#06x} to {address:#010x}, which is locked"),
+                ),
+                Err(trap) => self.watchdog_bites(trap),
+            },
             0x64 => self.clocks.write(offset, byte, now),
             0x66 => self.i2c.write(offset, byte, now, bus_hz, &self.pins),
             0x72 => self.usb.write(offset, byte),

@@ -32,4 +32,6 @@ pub mod firmware;
 
 pub mod random;
 
+pub mod witness;
+
 pub mod time;

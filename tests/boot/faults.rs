@@ -2,6 +2,7 @@
 
 use vrduino_emulator::board::Setup;
 use vrduino_emulator::motion::turns::Turns;
+use vrduino_emulator::witness::Trap;
 
 use crate::run::{Run, degrees_between};
 
@@ -94,7 +95,8 @@ fn a_clock_line_held_low_is_reported_and_never_hangs_the_board() {
 
 #[test]
 fn a_hang_becomes_a_watchdog_reset_and_the_next_life_says_where() {
-    let mut run = Run::still();
+    let still = Box::new(Turns::new(1e6, 0.0));
+    let mut run = Run::with(Setup::new(still).allowing(&[Trap::WatchdogTimeout]));
     run.seconds(1.5);
     // An endless loop: the branch-to-self behind a hard fault will do.
     let address = run

@@ -59,6 +59,9 @@ impl Run {
         let until = self.board.now() + time::ticks(seconds);
         while self.board.now() < until {
             self.board.run(MILLISECOND);
+            if let Some(stop) = self.board.stop() {
+                panic!("the program stepped into a trap:\n{stop}\n{}", self.text);
+            }
             let received = self.board.chip_quietly().host.take_received();
             let now = time::seconds(self.board.now());
             self.text

@@ -1,6 +1,7 @@
 //! Watchdog timer (K20 manual, chapter 23): unlock window, write-once configuration, refresh sequence.
 
 use crate::time::{self, NEVER, Ticks};
+use crate::witness::Trap;
 
 const STCTRLH: u32 = 0x00;
 const STCTRLL: u32 = 0x02;
@@ -100,26 +101,26 @@ impl Watchdog {
     }
 
     /// Why the watchdog resets the chip at `now`, if it does.
-    pub fn expired(&mut self, now: Ticks, bus_hz: u32) -> Option<&'static str> {
+    pub fn expired(&mut self, now: Ticks, bus_hz: u32) -> Option<Trap> {
         match self.lock {
             Lock::Fresh(until) if now >= until => {
-                return Some("not unlocked within 256 bus cycles of reset (K20 manual 23.3.2)");
+                return Some(Trap::WatchdogNotUnlocked);
             }
             Lock::Half(until) if now >= until => {
-                return Some("more than 20 bus cycles between the two unlock words (23.3.1)");
+                return Some(Trap::WatchdogUnlockSlow);
             }
             Lock::Open(until) if now >= until => {
                 if self.written == 0 {
-                    return Some("unlocked but not configured within 256 bus cycles (23.3.2)");
+                    return Some(Trap::WatchdogNotConfigured);
                 }
                 self.lock = Lock::Closed;
             }
             _ => {}
         }
         if self.refreshing.is_some_and(|until| now >= until) {
-            return Some("more than 20 bus cycles between the two refresh words (23.7.7)");
+            return Some(Trap::WatchdogRefreshSlow);
         }
-        (now >= self.deadline(bus_hz)).then_some("not refreshed before its time-out")
+        (now >= self.deadline(bus_hz)).then_some(Trap::WatchdogTimeout)
     }
 
     /// Reads a 16-bit register.
@@ -145,25 +146,19 @@ impl Watchdog {
         }
     }
 
-    /// Writes a 16-bit register; an error resets the chip for the reason it carries.
-    pub fn write(
-        &mut self,
-        offset: u32,
-        value: u16,
-        now: Ticks,
-        bus_hz: u32,
-    ) -> Result<(), &'static str> {
+    /// Writes a 16-bit register. An error is a broken rule: all but [`Trap::WatchdogLocked`] reset the chip.
+    pub fn write(&mut self, offset: u32, value: u16, now: Ticks, bus_hz: u32) -> Result<(), Trap> {
         let soon = now + time::of_cycles(SEQUENCE_CYCLES, bus_hz);
         match offset {
             UNLOCK => match (value, self.lock) {
                 (0xC520, Lock::Fresh(_)) => self.lock = Lock::Half(soon),
                 (0xC520, _) if self.stctrlh & ALLOWUPDATE != 0 => self.lock = Lock::Half(soon),
-                (0xC520, _) => {}
+                (0xC520, _) => return Err(Trap::WatchdogLocked),
                 (0xD928, Lock::Half(_)) => {
                     self.lock = Lock::Open(now + time::of_cycles(CONFIGURATION_CYCLES, bus_hz));
                     self.written = 0;
                 }
-                _ => return Err("wrong unlock sequence; it is 0xC520, then 0xD928 (23.3.1)"),
+                _ => return Err(Trap::WatchdogUnlockSequence),
             },
             REFRESH => match (value, self.refreshing) {
                 (0xA602, None) => self.refreshing = Some(soon),
@@ -173,30 +168,30 @@ impl Watchdog {
                             < self.counting_since
                                 + time::of_cycles(u64::from(self.window), self.counter_hz(bus_hz));
                     if early {
-                        return Err("refreshed before its window opened (23.7.6)");
+                        return Err(Trap::WatchdogRefreshEarly);
                     }
                     self.refreshing = None;
                     self.counting_since = now;
                 }
-                _ => return Err("wrong refresh sequence; it is 0xA602, then 0xB480 (23.7.7)"),
+                _ => return Err(Trap::WatchdogRefreshSequence),
             },
             RSTCNT => self.resets &= !value,
-            _ => self.configure(offset, value, now),
+            _ => return self.configure(offset, value, now),
         }
         Ok(())
     }
 
-    /// Writes outside the window, or a second time within it, are ignored (23.3.2).
-    fn configure(&mut self, offset: u32, value: u16, now: Ticks) {
+    /// Writes outside the window, or a second time within it, are lost (23.3.2).
+    fn configure(&mut self, offset: u32, value: u16, now: Ticks) -> Result<(), Trap> {
         let Some(index) = CONFIGURATION
             .iter()
             .position(|&register| register == offset)
         else {
-            return;
+            return Ok(());
         };
         let open = matches!(self.lock, Lock::Open(until) if now < until);
         if !open || self.written & 1 << index != 0 {
-            return;
+            return Err(Trap::WatchdogLocked);
         }
         self.written |= 1 << index;
         let word = u32::from(value);
@@ -209,5 +204,6 @@ impl Watchdog {
             _ => self.prescaler = value,
         }
         self.counting_since = now;
+        Ok(())
     }
 }

@@ -7,6 +7,7 @@ use clap::{Parser, ValueEnum};
 use vrduino_emulator::board::Board;
 use vrduino_emulator::mpu9250::Part;
 use vrduino_emulator::time::{self, Ticks};
+use vrduino_emulator::witness::Trap;
 
 /// Boots the tracker's image on an emulated VRduino board and prints what it streams.
 ///
@@ -45,6 +46,23 @@ pub struct Arguments {
     /// Break something, from S on (else from the start) and until T (else for good); may be given more than once
     #[arg(long, value_name = "FAULT[@S[-T]]", help = FAULT_HELP)]
     pub fault: Vec<Fault>,
+
+    /// Let time pass by the pessimistic end of the band of cycle counts: with the flash's wait states
+    #[arg(long)]
+    pub pessimistic: bool,
+
+    /// Time the calls of this function, by the end of its path, e.g. Tracker::update
+    #[arg(long, value_name = "FUNCTION")]
+    pub time: Option<String>,
+
+    /// Go on as silicon would after stepping into this trap, instead of stopping with exit code 3; `all` allows
+    /// every one; may be given more than once
+    #[arg(long, value_name = "TRAP", value_parser = allowed)]
+    pub allow: Vec<Allowed>,
+
+    /// List the traps, each with the rule it stands for, and end
+    #[arg(long)]
+    pub traps: bool,
 
     /// The individual sensor: perfect, typical (errors drawn within the data sheet's limits) or worst (all at the limit)
     #[arg(long, value_name = "KIND", default_value = "perfect")]
@@ -116,6 +134,17 @@ fn seed(text: &str) -> Result<u64, String> {
 fn byte(text: &str) -> Result<u8, String> {
     let digits = text.strip_prefix("0x").unwrap_or(text);
     u8::from_str_radix(digits, 16).map_err(|_| "give a byte in hexadecimal, such as 0x71".into())
+}
+
+/// One trap, or all.
+#[derive(Debug, Clone, Copy)]
+pub struct Allowed(Option<Trap>);
+
+fn allowed(text: &str) -> Result<Allowed, String> {
+    if text == "all" {
+        return Ok(Allowed(None));
+    }
+    text.parse().map(|trap| Allowed(Some(trap)))
 }
 
 /// Keys to type, and when.
@@ -212,6 +241,17 @@ impl Arguments {
         } else {
             part
         }
+    }
+
+    /// The traps that do not stop the run.
+    pub fn allowed(&self) -> Vec<Trap> {
+        if self.allow.iter().any(|Allowed(trap)| trap.is_none()) {
+            return Trap::ALL.to_vec();
+        }
+        self.allow
+            .iter()
+            .filter_map(|Allowed(trap)| *trap)
+            .collect()
     }
 
     /// Keys and faults as a script.

@@ -14,10 +14,12 @@ use std::time::{Duration, Instant};
 
 use clap::Parser;
 use vrduino_emulator::board::{Board, Setup};
+use vrduino_emulator::cpu::Pace;
 use vrduino_emulator::firmware;
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::{self, Motion};
 use vrduino_emulator::time::{self, MILLISECOND, Ticks};
+use vrduino_emulator::witness::{Stop, Trap};
 
 use arguments::{Arguments, PartKind};
 use port::PseudoTerminal;
@@ -25,9 +27,23 @@ use report::Report;
 
 type Error = Box<dyn std::error::Error>;
 
+/// Exit code of a run that ended in a trap.
+const TRAPPED: u8 = 3;
+
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
+    let arguments = Arguments::parse();
+    if arguments.traps {
+        for trap in Trap::ALL {
+            println!("{trap}\n    {}", trap.rule());
+        }
+        return ExitCode::SUCCESS;
+    }
+    match run(&arguments) {
+        Ok(None) => ExitCode::SUCCESS,
+        Ok(Some(stop)) => {
+            eprintln!("\n{stop}");
+            ExitCode::from(TRAPPED)
+        }
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::FAILURE
@@ -35,7 +51,8 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<(), Error> {
+/// Runs until the end, the limit, Ctrl-C, or a trap, which it returns.
+fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     // What the user has given is looked at first: no point in building before a wrong file name.
     let motion = choose_motion(arguments)?;
     let (description, ends) = (motion.describe(), motion.duration());
@@ -47,6 +64,14 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let setup = Setup {
         motion,
         part: arguments.part(),
+        allowed: arguments.allowed(),
+        pace: if arguments.pessimistic {
+            Pace::Greatest
+        } else {
+            Pace::Least
+        },
+        skip_polling: true,
+        timed_function: arguments.time.clone().unwrap_or_default(),
     };
     let mut board = Board::new(image, setup);
     let terminal = PseudoTerminal::open()?;
@@ -67,17 +92,20 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         paced_since: None,
     };
     let mut script = arguments.script();
-    while limit.is_none_or(|limit| board.now() < limit) && !interrupted.load(Ordering::Relaxed) {
+    while limit.is_none_or(|limit| board.now() < limit)
+        && board.stop().is_none()
+        && !interrupted.load(Ordering::Relaxed)
+    {
         script.apply(&mut board);
         board.run(MILLISECOND.min(limit.map_or(MILLISECOND, |limit| limit - board.now())));
         match session.pass_on(&mut board) {
             // Whoever read our output has seen enough.
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(None),
             result => result?,
         }
     }
     session.report.print(&mut board);
-    Ok(())
+    Ok(board.stop().cloned())
 }
 
 /// What moves the sensor, from the chosen start.
