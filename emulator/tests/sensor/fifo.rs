@@ -57,6 +57,16 @@ fn each_enable_adds_its_own_bytes() {
 }
 
 #[test]
+fn the_axes_of_the_gyroscope_are_enabled_one_by_one() {
+    for (enable, axis) in [(0x40, 0), (0x20, 1), (0x10, 2)] {
+        let mut driver = filling(still(), enable);
+        driver.wait_periods(1, 1_000);
+        let bytes = driver.read_many(0x74, 2);
+        assert_eq!(big_endian(&bytes)[0], driver.gyro()[axis]);
+    }
+}
+
+#[test]
 fn the_count_is_held_from_its_high_byte_on() {
     let mut driver = filling(still(), ACCEL);
     driver.wait_periods(50, 1_000);

@@ -163,6 +163,7 @@ fn a_reset_signal_path_starts_from_zero() {
     assert_eq!(driver.gyro()[0], 16_384);
     // GYRO_RST: the filter starts from zero, the register keeps what it has (RM 4.31).
     driver.write(0x68, 0x04);
+    assert_eq!(driver.read(0x68), 0, "it clears itself");
     assert_eq!(driver.gyro()[0], 16_384);
     driver.wait(0.01);
     let rising = driver.gyro()[0];

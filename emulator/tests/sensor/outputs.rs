@@ -101,13 +101,17 @@ fn disabled_axes_read_zero_and_the_powered_down_thermometer_too() {
         ..NOTHING
     };
     let mut driver = at_range(3, instant);
-    driver.write(0x6C, 0b01_0001);
+    for bit in 0..6 {
+        driver.write(0x6C, 1 << bit);
+        driver.wait(0.1);
+        // Bits 5 to 3 are the accelerometer's x, y, z, bits 2 to 0 the gyroscope's.
+        let axes = [driver.accel(), driver.gyro()].concat();
+        let zero: Vec<usize> = (0..6).filter(|&axis| axes[axis] == 0).collect();
+        assert_eq!(zero, [5 - bit]);
+    }
+    assert_ne!(driver.words(0x41, 1), [0]);
     driver.write(0x6B, 0x09);
     driver.wait(0.1);
-    assert!(driver.accel()[0] != 0 && driver.accel()[2] != 0);
-    assert_eq!(driver.accel()[1], 0);
-    assert!(driver.gyro()[0] != 0 && driver.gyro()[1] != 0);
-    assert_eq!(driver.gyro()[2], 0);
     assert_eq!(driver.words(0x41, 1), [0]);
 }
 

@@ -61,14 +61,21 @@ fn in_standby_the_gyroscope_is_back_at_once() {
 #[test]
 fn motion_wakes() {
     let jump = |size: f64| about_x(move |t| if t < 1.0 { 0.2 } else { 0.2 + size });
-    for (size, wakes) in [(0.030, false), (0.034, true), (-0.034, true)] {
+    // Thresholds of 32 mg, and of half a g, which is 8192 counts exactly and has to be exceeded.
+    for (threshold, size, wakes) in [
+        (8, 0.030, false),
+        (8, 0.034, true),
+        (8, -0.034, true),
+        (125, 0.5, false),
+        (125, 0.5001, true),
+    ] {
         let mut driver = Driver::perfect(jump(size));
         driver.write(0x6B, 0x01);
         driver.write(0x6C, 0x07);
         driver.write(0x1D, 0x01);
         driver.write(0x38, 0x40);
         driver.write(0x69, 0xC0);
-        driver.write(0x1F, 8); // 32 mg
+        driver.write(0x1F, threshold);
         driver.write(0x1E, 6); // 15.63 Hz
         driver.write(0x37, 0x20);
         driver.write(0x6B, 0x21);
