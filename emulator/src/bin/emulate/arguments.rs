@@ -69,7 +69,7 @@ pub struct Arguments {
     pub part: PartKind,
 
     /// Which of the typical or worst parts, and which noise: the same seed gives the same run
-    #[arg(long, value_name = "N", default_value = "1", value_parser = seed)]
+    #[arg(long, value_name = "N", default_value = "1", value_parser = seed, allow_negative_numbers = true)]
     pub seed: u64,
 
     /// The sensor's WHO_AM_I; 0x70 and 0x75 are clones without magnetometer
