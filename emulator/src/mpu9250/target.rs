@@ -123,7 +123,7 @@ impl Mpu9250 {
                 self.registers[SIGNAL_PATH_RESET] = 0;
             }
             USER_CTRL => self.control(value, now),
-            FIFO_R_W => {
+            FIFO_R_W if self.registers.has(USER_CTRL, FIFO_ENABLED) => {
                 let keep = self.registers.has(CONFIG, super::FIFO_MODE);
                 self.fifo.push(value, keep);
             }
