@@ -278,7 +278,7 @@ impl Mpu9250 {
         if !gyro_driven(before) && gyro_driven(&self.registers) {
             self.started.gyro = now + GYRO_START;
             self.locks_at = Some(self.started.gyro);
-            self.path.settle();
+            self.path.settle_gyro();
         }
         let awake = |registers: &Registers| registers[PWR_MGMT_1] & SLEEP == 0;
         if !awake(before) && awake(&self.registers) {

@@ -115,6 +115,11 @@ impl SignalPath {
         self.temperature = LowPass::settled();
     }
 
+    /// The same for a gyroscope that was turned off alone.
+    pub fn settle_gyro(&mut self) {
+        self.gyro = LowPass::settled();
+    }
+
     /// SIGNAL_PATH_RESET (register map 4.31): bit 2 gyroscope, bit 1 accelerometer, bit 0 temperature.
     pub fn reset(&mut self, bits: u8) {
         if bits & 4 != 0 {

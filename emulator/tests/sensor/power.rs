@@ -45,6 +45,24 @@ fn from_sleep_the_accelerometer_takes_20_ms_and_the_gyroscope_35() {
 }
 
 #[test]
+fn the_gyroscope_can_be_turned_off_and_on_beside_the_accelerometer() {
+    let mut driver = turning();
+    driver.write(0x1B, 0x1B); // 32 kHz, so that nothing is missed
+    driver.write(0x6C, 0x07);
+    driver.wait(0.1);
+    assert_eq!(driver.gyro(), [0; 3]);
+    driver.write(0x6C, 0x00);
+    for _ in 0..100 {
+        driver.wait_periods(1, 32_000);
+        assert_eq!(driver.accel(), [2048; 3]);
+    }
+    driver.wait(0.030);
+    assert_eq!(driver.gyro()[0], 0, "33 ms");
+    driver.wait(0.005);
+    assert_eq!(driver.gyro()[0], 939, "38 ms");
+}
+
+#[test]
 fn in_standby_the_gyroscope_is_back_at_once() {
     let mut driver = turning();
     driver.write(0x6B, 0x11);
