@@ -7,8 +7,8 @@
 //!                       └ AK8963 ──► auxiliary master ──────┘
 //! ```
 //!
-//! From the product specification (PS-MPU-9250A-01 rev. 1.0), the register map (RM-MPU-9250A-00 rev. 1.4 and the
-//! accelerometer's filters of rev. 1.6), the application note on self-test (AN-MPU-9250A-03) and the AK8963 data sheet
+//! From the product specification (PS-MPU-9250A-01 rev. 1.0), the register map (RM-MPU-9250A-00 rev. 1.4; the
+//! accelerometer's filters of rev. 1.6 at second hand), the application note on self-test (AN-MPU-9250A-03) and the AK8963 data sheet
 //! (MS1356-E-02). Nothing is computed until the bus looks; what it then sees does not depend on how often it looks.
 
 pub mod ak8963;

@@ -47,7 +47,8 @@ const TEMPERATURE: [Response; 8] = [
     response(4000.0, 0.04),
 ];
 
-/// A_DLPF_CFG 0 to 7 (register map rev. 1.6, section 4.8; rev. 1.4 prints twice the gyroscope's delays).
+/// A_DLPF_CFG 0 to 7: the figures of register map rev. 1.6, as the documentation of the crate `mpu9250` gives them.
+/// Section 4.8 of rev. 1.4 has other bandwidths and twice the gyroscope's delays.
 const ACCEL: [Response; 8] = [
     response(218.1, 1.88),
     response(218.1, 1.88),
