@@ -21,7 +21,7 @@ use vrduino_emulator::motion::{self, Motion};
 use vrduino_emulator::time::{self, MILLISECOND, Ticks};
 use vrduino_emulator::witness::{Stop, Trap};
 
-use arguments::Arguments;
+use arguments::{Arguments, PartKind};
 use port::PseudoTerminal;
 use report::Report;
 
@@ -75,8 +75,7 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     }
     let setup = Setup {
         motion,
-        who_am_i: arguments.who_am_i,
-        sensor_clock_error: arguments.sensor_clock / 100.0,
+        part: arguments.part(),
         allowed: arguments.allowed(),
         pace: if arguments.pessimistic {
             Pace::Greatest
@@ -125,7 +124,9 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
 fn choose_motion(arguments: &Arguments) -> Result<Box<dyn Motion>, Error> {
     let motion = match &arguments.motion {
         Some(path) => motion::open(path)?,
-        None => motion::built_in(),
+        // A part with errors of its own needs none added to what it feels.
+        None if arguments.part == PartKind::Perfect => motion::built_in(),
+        None => Box::new(motion::Head::new()),
     };
     Ok(motion::skip(motion, arguments.start)?)
 }
