@@ -203,7 +203,8 @@ impl Chip {
         self.i2c.advance(now, &self.pins, &mut self.sensor);
         if now >= self.host.next_event() {
             let clocked = self.usb_clocked();
-            self.host.advance(now, clocked, &mut self.usb, &self.ram);
+            self.host
+                .advance(now, clocked, &mut self.usb, &self.ram, &mut self.witness);
         }
     }
 
@@ -298,7 +299,7 @@ impl Chip {
             },
             0x64 => self.clocks.write(offset, byte, now),
             0x66 => self.i2c.write(offset, byte, now, bus_hz, &self.pins),
-            0x72 => self.usb.write(offset, byte),
+            0x72 => self.usb.write(offset, byte, &mut self.witness),
             0xFF => self.pins.write_gpio(offset, value),
             _ => self.rest.write(address, width, value),
         }

@@ -72,9 +72,6 @@ impl Report {
                 ),
                 None => eprintln!("device  none: the image did not bring up its USB port"),
             }
-            for complaint in chip.host.complaints.iter().chain(&chip.usb.complaints) {
-                eprintln!("usb     {complaint}");
-            }
         }
         match self.first {
             Some(first) => {
