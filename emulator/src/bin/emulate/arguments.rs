@@ -38,6 +38,11 @@ pub struct Arguments {
     #[arg(long)]
     pub realtime: bool,
 
+    /// Offer the device to another host over USB/IP on this port of 127.0.0.1, in real time, instead of reading it; 0 is
+    /// any free port, which is printed
+    #[arg(long, value_name = "PORT", conflicts_with = "typed")]
+    pub usbip: Option<u16>,
+
     /// Type these keys on the serial port, e.g. 2@3.5 for the key 2 at 3.5 s; may be given more than once
     #[arg(long = "type", value_name = "KEYS@S")]
     pub typed: Vec<Typed>,
