@@ -83,6 +83,25 @@ pub const INTERRUPTS: [u16; 6] = [
     irq::USBOTG,
 ];
 
+/// Whether reading `address` changes nothing, and finds the same until the next event or access.
+pub fn is_steady(address: u32) -> bool {
+    const I2C0_C1: u32 = 0x4006_6002;
+    const I2C0_S: u32 = 0x4006_6003;
+    const MCG_S: u32 = 0x4006_4006;
+    const FTFL_FSTAT: u32 = 0x4002_0000;
+    const USB_ISTAT: u32 = 0x4007_2080;
+    const UART0_S1: u32 = 0x4006_A004;
+    const SIM: u32 = 0x4004_7000;
+    const GPIO: u32 = 0x400F_F000;
+    let page = address & !0xFFF;
+    matches!(
+        address,
+        I2C0_C1 | I2C0_S | MCG_S | FTFL_FSTAT | USB_ISTAT | UART0_S1
+    ) || page == SIM
+        || page == SIM + 0x1000
+        || page == GPIO
+}
+
 /// Every peripheral, the sensor, and the host.
 #[derive(Debug)]
 pub struct Chip {
@@ -169,6 +188,12 @@ impl Chip {
     /// The processor's clock.
     pub fn core_hz(&self) -> u32 {
         self.sim.divide(self.clocks.output_hz(self.now)).0
+    }
+
+    /// The core clock over the flash clock.
+    pub fn flash_ratio(&self) -> u32 {
+        let (core, _, flash) = self.sim.divide(self.clocks.output_hz(self.now));
+        core.checked_div(flash).unwrap_or(1).max(1)
     }
 
     fn bus_hz(&self) -> u32 {

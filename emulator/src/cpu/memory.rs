@@ -1,0 +1,167 @@
+//! The memories that the processor sees, and the door to the peripherals.
+
+use std::sync::Arc;
+
+use rsemu::core::error::BusError;
+use rsemu::core::space::{
+    AccessConstraints, AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite,
+};
+use rsemu::core::value::{Endian, Width};
+
+use super::{RAM_BASE, RAM_SIZE};
+
+const PERIPHERALS_BASE: u32 = 0x4000_0000;
+const PERIPHERALS_SIZE: u32 = 0x0010_0000;
+const FLEXRAM_BASE: u32 = 0x1400_0000;
+const FLEXRAM_SIZE: u64 = 2 * 1024;
+
+/// What answers the processor's accesses to the peripheral bridges.
+pub trait PeripheralBus: Send + Sync + std::fmt::Debug {
+    /// Reads `width` bytes; `None` is a bus error.
+    fn read(&self, address: u32, width: u8) -> Option<u32>;
+    /// Writes `width` bytes; `false` is a bus error.
+    fn write(&self, address: u32, width: u8, value: u32) -> bool;
+}
+
+/// The chip's SRAM, which outlives every reset and which USB reads and writes on its own.
+#[derive(Debug, Clone)]
+pub struct Ram(Arc<RamStore>);
+
+impl Ram {
+    /// SRAM as it is after power-on: not zero, so that firmware which relies on zeroed memory is found out.
+    pub fn new() -> Ram {
+        let store = RamStore::new(u64::from(RAM_SIZE));
+        // The pattern differs from byte to byte; any fixed one will do.
+        for offset in 0..u64::from(RAM_SIZE) {
+            let _ = store.write_u8(offset, (offset as u8).wrapping_mul(167) ^ 0xA5);
+        }
+        Ram(Arc::new(store))
+    }
+
+    /// Reads the 32-bit word at `address`; `None` outside the SRAM.
+    pub fn word(&self, address: u32) -> Option<u32> {
+        let offset = u64::from(address.checked_sub(RAM_BASE)?);
+        self.0
+            .read_value(offset, Width::U32, Endian::Little)
+            .ok()
+            .map(|v| v as u32)
+    }
+
+    /// Writes the 32-bit word at `address`; `false` outside the SRAM.
+    pub fn set_word(&self, address: u32, value: u32) -> bool {
+        address.checked_sub(RAM_BASE).is_some_and(|offset| {
+            self.0
+                .write_value(
+                    u64::from(offset),
+                    Width::U32,
+                    u64::from(value),
+                    Endian::Little,
+                )
+                .is_ok()
+        })
+    }
+
+    /// Reads bytes from `address` on; `None` if any lies outside the SRAM. No bytes may be anywhere.
+    pub fn bytes(&self, address: u32, length: usize) -> Option<Vec<u8>> {
+        let mut bytes = vec![0; length];
+        if length > 0 {
+            let offset = u64::from(address.checked_sub(RAM_BASE)?);
+            self.0.read_at(offset, &mut bytes).ok()?;
+        }
+        Some(bytes)
+    }
+
+    /// Writes bytes from `address` on; `false` if any would lie outside the SRAM.
+    pub fn set_bytes(&self, address: u32, bytes: &[u8]) -> bool {
+        bytes.is_empty()
+            || address
+                .checked_sub(RAM_BASE)
+                .is_some_and(|offset| self.0.write_at(u64::from(offset), bytes).is_ok())
+    }
+}
+
+impl Default for Ram {
+    fn default() -> Ram {
+        Ram::new()
+    }
+}
+
+/// The chip's memory map, with `flash` at address 0 (K20 manual, section 4.2).
+pub(super) fn map(
+    flash: &[u8],
+    ram: &Ram,
+    peripherals: Arc<dyn PeripheralBus>,
+) -> Arc<AddressSpace> {
+    let space = AddressSpace::new("K20", 32);
+    {
+        let mut map = space.topology();
+        let rom = Arc::new(RomStore::from_slice(flash));
+        let regions = [
+            (0, Region::rom("flash", rom, RomWrite::Fault)),
+            (RAM_BASE, Region::ram("sram", Arc::clone(&ram.0))),
+            (
+                FLEXRAM_BASE,
+                Region::ram("flexram", Arc::new(RamStore::new(FLEXRAM_SIZE))),
+            ),
+            (
+                PERIPHERALS_BASE,
+                Region::io(
+                    "peripherals",
+                    u64::from(PERIPHERALS_SIZE),
+                    Arc::new(Bridge(peripherals)),
+                ),
+            ),
+        ];
+        for (base, region) in regions {
+            map.map(region, u64::from(base))
+                .expect("the chip's regions do not overlap");
+        }
+    }
+    Arc::new(space)
+}
+
+/// Adapts [`PeripheralBus`] to the engine's idea of a memory-mapped device.
+#[derive(Debug)]
+struct Bridge(Arc<dyn PeripheralBus>);
+
+impl MemOps for Bridge {
+    fn read(&self, offset: u64, dst: &mut [u8], attrs: MemAttrs) -> Result<(), BusError> {
+        if attrs.debug {
+            dst.fill(0);
+            return Ok(());
+        }
+        if attrs.purpose.is_fetch() {
+            return Err(BusError::BadAccess);
+        }
+        let value = self
+            .0
+            .read(PERIPHERALS_BASE + offset as u32, dst.len() as u8)
+            .ok_or(BusError::BadAccess)?;
+        dst.copy_from_slice(&value.to_le_bytes()[..dst.len()]);
+        Ok(())
+    }
+
+    fn write(&self, offset: u64, src: &[u8], attrs: MemAttrs) -> Result<(), BusError> {
+        if attrs.debug {
+            return Ok(());
+        }
+        let mut bytes = [0; 4];
+        bytes[..src.len()].copy_from_slice(src);
+        let accepted = self.0.write(
+            PERIPHERALS_BASE + offset as u32,
+            src.len() as u8,
+            u32::from_le_bytes(bytes),
+        );
+        if accepted {
+            Ok(())
+        } else {
+            Err(BusError::BadAccess)
+        }
+    }
+
+    fn constraints(&self) -> AccessConstraints {
+        AccessConstraints::IO
+            .with_widths(Width::U8, Width::U32)
+            .with_natural_alignment(true)
+    }
+}
