@@ -78,8 +78,8 @@ impl Server {
     fn serve_one(&mut self, at: usize, now: Ticks, host: &mut Host) {
         let taken = self.connections.iter().any(Connection::has_device);
         let connection = &mut self.connections[at];
-        connection.receive();
         let had_device = connection.has_device();
+        connection.receive();
         let note = match go_on(connection, now, taken, host) {
             Ok(note) => note,
             Err(Malformed(why)) => {
