@@ -147,14 +147,17 @@ impl UsbController {
             Token::In => self.give(&transaction, witness),
             Token::Out(data, toggle) => {
                 if descriptor.synchronises() && handshakes && *toggle != descriptor.data1() {
-                    witness.saw(
-                        Trap::UsbToggle,
-                        format!(
-                            "{place} expects DATA{}, the host sends DATA{}: taken for a repetition and lost",
-                            u8::from(descriptor.data1()),
-                            u8::from(*toggle)
-                        ),
-                    );
+                    // An empty packet has nothing to lose: Teensyduino expects the first status stage as DATA0.
+                    if !data.is_empty() {
+                        witness.saw(
+                            Trap::UsbToggle,
+                            format!(
+                                "{place} expects DATA{}, the host sends DATA{}: taken for a repetition and lost",
+                                u8::from(descriptor.data1()),
+                                u8::from(*toggle)
+                            ),
+                        );
+                    }
                     return Answer::Ack;
                 }
                 self.take(&transaction, data, Pid::Out, witness)
