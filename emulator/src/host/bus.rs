@@ -245,6 +245,13 @@ impl Bus {
             self.drive_reset(now, device);
             return;
         }
+        let silent = matches!(self.port, Port::Settling { .. } | Port::Idle);
+        if silent && device.drives_resume() && !self.wake_up_enabled {
+            witness.saw(
+                Trap::UsbWakeUp,
+                "CTL[RESUME] was set while the bus was idle, and the host had not allowed it",
+            );
+        }
         match self.port {
             Port::Empty => {
                 self.port = Port::Settling {
@@ -261,7 +268,7 @@ impl Bus {
                 self.events.push_back(Event::Reset);
             }
             Port::Resuming { until } if now >= until => self.run_from(now, RESUME_RECOVERY),
-            Port::Idle => self.idle(now, device, witness),
+            Port::Idle => self.idle(now, device),
             Port::Running if self.suspend_wanted => {
                 self.port = Port::Idle;
                 self.idle_at = now + IDLE;
@@ -318,14 +325,8 @@ impl Bus {
     }
 
     /// No frames run: either side may end that.
-    fn idle(&mut self, now: Ticks, device: &mut UsbController, witness: &mut Witness) {
+    fn idle(&mut self, now: Ticks, device: &mut UsbController) {
         let woken = device.drives_resume();
-        if woken && !self.wake_up_enabled {
-            witness.saw(
-                Trap::UsbWakeUp,
-                "CTL[RESUME] was set while the bus was suspended, and the host had not allowed it",
-            );
-        }
         if self.address != 0 && (woken || !self.suspend_wanted) {
             self.suspend_wanted = false;
             self.port = Port::Resuming {

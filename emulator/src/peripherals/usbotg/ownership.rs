@@ -77,7 +77,8 @@ impl Ownership {
             }
             _ => {}
         }
-        *known = found.is_owned().then_some((place, found));
+        // One that stalls is not used up, and taking it back is how the stall ends.
+        *known = (found.is_owned() && !found.stalls()).then_some((place, found));
         if found.is_owned() && std::mem::take(&mut self.untold[place.index()]) {
             witness.saw(
                 Trap::UsbBufferTwice,
