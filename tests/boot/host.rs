@@ -103,6 +103,38 @@ fn the_board_survives_a_bus_reset_a_replug_and_back_to_back_requests() {
 }
 
 #[test]
+fn bus_resets_at_any_moment_of_the_traffic_leave_nothing_behind() {
+    let mut run = Run::still();
+    run.seconds(1.2);
+    for moment in 0..8 {
+        run.seconds(0.05 + 0.001_37 * f64::from(moment));
+        run.board.chip().host.reset_bus();
+        run.seconds(0.25);
+        assert!(run.board.chip().host.is_open(), "after reset {moment}");
+        run.forget();
+        run.wait_for("QC ", 0.5);
+    }
+    assert_eq!((run.board.stop(), run.board.resets()), (None, 0));
+}
+
+#[test]
+fn the_board_sleeps_with_the_bus_and_streams_again_when_it_is_resumed() {
+    let mut run = Run::still();
+    run.seconds(1.5);
+    for _ in 0..2 {
+        run.board.chip().host.set_suspended(true);
+        run.seconds(0.3);
+        let asleep = run.orientations.len();
+        run.seconds(0.2);
+        assert_eq!(run.orientations.len(), asleep);
+        run.board.chip().host.set_suspended(false);
+        run.seconds(0.3);
+        assert!(run.orientations.len() > asleep + 20, "it does not go on");
+    }
+    assert_eq!((run.board.stop(), run.board.resets()), (None, 0));
+}
+
+#[test]
 fn keys_choose_what_is_streamed() {
     let mut run = Run::still();
     run.seconds(1.5);

@@ -213,7 +213,9 @@ impl UsbController {
                 self.look_at_owners(endpoint, transmit, ram, witness);
             }
         }
-        self.ownership.find_shared_buffers(witness);
+        let endpoints = self.endpoints;
+        let isochronous = |number: u8| endpoints[usize::from(number)] & endpt::EPHSHK == 0;
+        self.ownership.find_shared_buffers(isochronous, witness);
     }
 
     /// The bus has been idle for 3 ms.
