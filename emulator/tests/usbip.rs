@@ -42,10 +42,11 @@ fn configure(client: &mut Client) -> Port {
         let mut rest = all.data.as_slice();
         loop {
             let (descriptor, more) = rest.split_at(usize::from(rest[0]));
-            if let [7, 5, address, kind, ..] = *descriptor {
-                if kind == attributes && (address & 0x80 != 0) == is_in {
-                    return address & 0xF;
-                }
+            if let [7, 5, address, kind, ..] = *descriptor
+                && kind == attributes
+                && (address & 0x80 != 0) == is_in
+            {
+                return address & 0xF;
             }
             rest = more;
         }
