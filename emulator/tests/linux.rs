@@ -16,7 +16,7 @@ mod run;
 
 use std::sync::OnceLock;
 
-use libtest_mimic::{Arguments, Trial};
+use libtest_mimic::{Arguments, Completion, Failed, Trial};
 
 use guest::Guest;
 
@@ -36,32 +36,31 @@ const CHECKS: [&str; 11] = [
 ];
 
 /// The guest's console, or why there is none. The guest is booted once, by whichever check comes first.
-fn console() -> &'static Result<String, String> {
+fn console(guest: &Guest) -> &'static Result<String, String> {
     static CONSOLE: OnceLock<Result<String, String>> = OnceLock::new();
-    CONSOLE.get_or_init(|| run::console_of(&Guest::find()?))
+    CONSOLE.get_or_init(|| run::console_of(guest))
+}
+
+fn run(check: &str) -> Result<Completion, Failed> {
+    let guest = match Guest::find() {
+        Ok(guest) => guest,
+        Err(missing) => return Ok(Completion::ignored_with(missing)),
+    };
+    let console = console(&guest).as_ref()?;
+    if console.contains(&format!("CHECK ok {check}")) {
+        Ok(Completion::Completed)
+    } else {
+        Err(console.into())
+    }
 }
 
 fn main() {
-    let missing = Guest::find().err();
     let mut arguments = Arguments::from_args();
     // All checks wait for the same guest.
     arguments.test_threads = Some(1);
     let trials = CHECKS
         .iter()
-        .map(|&check| {
-            let trial = Trial::test(check, move || {
-                let console = console().as_ref()?;
-                if console.contains(&format!("CHECK ok {check}")) {
-                    Ok(())
-                } else {
-                    Err(console.into())
-                }
-            });
-            match &missing {
-                Some(reason) => trial.with_kind(reason).with_ignored_flag(true),
-                None => trial,
-            }
-        })
+        .map(|&check| Trial::ignorable_test(check, move || run(check)))
         .collect();
     libtest_mimic::run(&arguments, trials).exit();
 }
