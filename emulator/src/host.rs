@@ -132,6 +132,11 @@ impl Host {
         self.bus.set_plugged(plugged);
     }
 
+    /// Disturbs every so many transactions, in turn the packet to the device and its handshake; 0 is a clean cable.
+    pub fn set_noise(&mut self, every: u32) {
+        self.bus.set_noise(every);
+    }
+
     /// Stops the frames, so that the device suspends itself, or resumes it.
     pub fn set_suspended(&mut self, suspended: bool) {
         self.bus.set_suspended(suspended);

@@ -118,6 +118,24 @@ fn bus_resets_at_any_moment_of_the_traffic_leave_nothing_behind() {
 }
 
 #[test]
+fn a_noisy_cable_costs_time_but_no_byte() {
+    let mut run = Run::still();
+    // Every fourth transaction, from the first request on.
+    run.board.chip().host.set_noise(4);
+    run.seconds(1.5);
+    assert_eq!(run.board.chip().host.identity().unwrap().product, 0x0483);
+    run.board.chip().host.send(b"1");
+    run.wait_for("FLAT ", 0.5);
+    run.seconds(1.0);
+    let (whole, _) = run.text.rsplit_once('\n').expect("lines");
+    for line in whole.lines() {
+        let known = ["QC ", "FLAT ", "vrduino ", "Measuring bias", "bias: "];
+        assert!(known.iter().any(|tag| line.starts_with(tag)), "{line:?}");
+    }
+    assert_eq!((run.board.stop(), run.board.resets()), (None, 0));
+}
+
+#[test]
 fn the_board_sleeps_with_the_bus_and_streams_again_when_it_is_resumed() {
     let mut run = Run::still();
     run.seconds(1.5);

@@ -12,7 +12,7 @@ use super::control::ControlPipe;
 use super::descriptors::Configuration;
 use super::pipe::Pipe;
 use super::transfer::{Failure, Outcome, Ticket, Transfer};
-use super::wire::Wire;
+use super::wire::{Noise, Wire};
 use crate::cpu::Ram;
 use crate::peripherals::usbotg::UsbController;
 use crate::time::{MICROSECOND, MILLISECOND, NEVER, Ticks};
@@ -88,6 +88,7 @@ pub(super) struct Bus {
     configurations: Vec<Configuration>,
     /// The value of the active one; 0 is none.
     configuration: u8,
+    noise: Noise,
     tickets: u64,
     events: VecDeque<Event>,
 }
@@ -112,6 +113,7 @@ impl Bus {
             last_served: 0,
             configurations: Vec::new(),
             configuration: 0,
+            noise: Noise::default(),
             tickets: 0,
             events: VecDeque::new(),
         }
@@ -120,6 +122,11 @@ impl Bus {
     /// Pulls the plug or puts it back.
     pub fn set_plugged(&mut self, plugged: bool) {
         self.plugged = plugged;
+    }
+
+    /// Disturbs every so many transactions: damages the packet to the device, or its handshake; 0 ends that.
+    pub fn set_noise(&mut self, every: u32) {
+        self.noise.every = every;
     }
 
     /// Resets the device; [`Event::Reset`] follows if one is there.
@@ -357,6 +364,7 @@ impl Bus {
             self.free_at = self.next_frame;
             return;
         }
+        let mut noise = std::mem::take(&mut self.noise);
         let mut wire = Wire {
             now,
             frame_end: self.next_frame,
@@ -364,8 +372,10 @@ impl Bus {
             device,
             ram,
             witness,
+            noise: &mut noise,
         };
         let bytes = self.transact(&mut wire);
+        self.noise = noise;
         // Token, data with its worst-case bit stuffing, handshake and the gaps between them, at 12 bits a µs.
         self.free_at = now + (100 + bytes as Ticks * 28 / 3) * MICROSECOND / 12;
     }

@@ -100,7 +100,11 @@ impl ControlPipe {
             .running
             .get_or_insert_with(|| Running::new(wire.now + PATIENCE));
         let token = running.token(request, self.packet);
-        let answer = wire.transact(0, &token);
+        let answer = match wire.transact(0, &token, running.tries > 0) {
+            // Only ACK is an answer to a SETUP (USB 2.0, 8.4.6.4).
+            Answer::Stall | Answer::Nak if running.stage == Stage::Setup => Answer::Silence,
+            answer => answer,
+        };
         let bytes = match (&token, &answer) {
             (Token::Setup(_), _) => 8,
             (Token::Out(data, _), _) | (_, Answer::Data(data, _)) => data.len(),

@@ -107,7 +107,7 @@ impl Pipe {
                 Token::Out(packet, self.toggle)
             }
         };
-        let answer = wire.transact(self.endpoint.number(), &token);
+        let answer = wire.transact(self.endpoint.number(), &token, self.tries > 0);
         let bytes = match (&token, &answer) {
             (Token::Out(data, _), _) | (_, Answer::Data(data, _)) => data.len(),
             _ => 0,
@@ -133,7 +133,7 @@ impl Pipe {
                 Some(Outcome::Stalled)
             }
             Answer::Data(data, toggle) => self.data(&token, data, toggle, wire),
-            Answer::Ack => {
+            Answer::Ack | Answer::Dropped => {
                 self.note_lost_halt(wire);
                 self.toggle = !self.toggle;
                 self.packet_passed(&token, &[])

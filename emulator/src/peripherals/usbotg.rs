@@ -51,6 +51,8 @@ mod istat {
 
 /// ERRSTAT: the packet does not fit its buffer.
 const DMAERR: u8 = 1 << 5;
+/// ERRSTAT: the packet's checksum is wrong.
+const CRC16: u8 = 1 << 2;
 
 /// CTL.
 mod ctl {

@@ -84,7 +84,7 @@ pub struct Arguments {
 
 const FAULT_HELP: &str = "Break something, from S on (else from the start) and until T (else for good): absent (no sensor \
                           answers), frozen (no new samples), brown-out (the sensor loses its settings), stuck-sda (held \
-                          until it is clocked free), stuck-scl, no-pull-ups, unread (nobody reads the port), unplugged; may be given \
+                          until it is clocked free), stuck-scl, no-pull-ups, unread (nobody reads the port), unplugged, noisy-usb (damaged packets and lost handshakes); may be given \
                           more than once";
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -151,6 +151,7 @@ enum Kind {
     NoPullUps,
     Unread,
     Unplugged,
+    NoisyUsb,
 }
 
 /// Something broken for a while.
@@ -180,7 +181,7 @@ impl FromStr for Fault {
         }
         Ok(Fault {
             kind: Kind::from_str(kind, true)
-                .map_err(|_| "give one of absent, frozen, brown-out, stuck-sda, stuck-scl, no-pull-ups, unread, unplugged")?,
+                .map_err(|_| "give one of absent, frozen, brown-out, stuck-sda, stuck-scl, no-pull-ups, unread, unplugged, noisy-usb")?,
             from: time::ticks(from),
             until: until.map_or(Ticks::MAX, time::ticks),
         })
@@ -243,6 +244,7 @@ impl Script {
                 Kind::NoPullUps => chip.pins.no_pull_ups = due,
                 Kind::Unread => chip.host.set_reading(!due),
                 Kind::Unplugged => chip.host.set_plugged(!due),
+                Kind::NoisyUsb => chip.host.set_noise(if due { 5 } else { 0 }),
             }
         }
     }

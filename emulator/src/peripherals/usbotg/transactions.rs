@@ -1,7 +1,7 @@
 //! Tokens and handshakes: what the controller does when the host addresses one of its endpoints.
 
 use super::table::{Descriptor, Pid, Place};
-use super::{COMPLETED, DMAERR, UsbController, ctl, endpt, istat};
+use super::{COMPLETED, CRC16, DMAERR, UsbController, ctl, endpt, istat};
 use crate::cpu::Ram;
 use crate::witness::{Trap, Witness};
 
@@ -23,6 +23,8 @@ pub enum Answer {
     Data(Vec<u8>, bool),
     /// Accepted.
     Ack,
+    /// Accepted on the wire, but dropped: the toggle says that it was taken before.
+    Dropped,
     /// Not now.
     Nak,
     /// Never.
@@ -98,7 +100,7 @@ impl UsbController {
             return Answer::Silence;
         }
         let handshakes = bits & endpt::EPHSHK != 0;
-        // A SETUP may be neither NAKed nor stalled (USB 2.0, 8.5.3): where the controller cannot take it, it is lost.
+        // A SETUP is never NAKed (USB 2.0, 8.5.3): where the controller has no room for it, it is lost.
         let refuse = |answer: Answer| {
             if setup || !handshakes {
                 Answer::Silence
@@ -106,9 +108,10 @@ impl UsbController {
                 answer
             }
         };
+        // The manual says it of any access, so of a SETUP too.
         if bits & endpt::EPSTALL != 0 {
-            self.istat |= if setup { 0 } else { istat::STALL };
-            return refuse(Answer::Stall);
+            self.istat |= istat::STALL;
+            return Answer::Stall;
         }
         if self.ctl & ctl::TXSUSPENDTOKENBUSY != 0 || self.completed.len() >= COMPLETED {
             return refuse(Answer::Nak);
@@ -134,7 +137,7 @@ impl UsbController {
         }
         if descriptor.stalls() {
             self.istat |= istat::STALL;
-            return refuse(Answer::Stall);
+            return Answer::Stall;
         }
         let transaction = Transaction {
             place,
@@ -147,18 +150,7 @@ impl UsbController {
             Token::In => self.give(&transaction, witness),
             Token::Out(data, toggle) => {
                 if descriptor.synchronises() && handshakes && *toggle != descriptor.data1() {
-                    // An empty packet has nothing to lose: Teensyduino expects the first status stage as DATA0.
-                    if !data.is_empty() {
-                        witness.saw(
-                            Trap::UsbToggle,
-                            format!(
-                                "{place} expects DATA{}, the host sends DATA{}: taken for a repetition and lost",
-                                u8::from(descriptor.data1()),
-                                u8::from(*toggle)
-                            ),
-                        );
-                    }
-                    return Answer::Ack;
+                    return Answer::Dropped;
                 }
                 self.take(&transaction, data, Pid::Out, witness)
             }
@@ -170,6 +162,13 @@ impl UsbController {
                 }
                 answer
             }
+        }
+    }
+
+    /// A packet comes that is damaged; the controller does not answer it.
+    pub fn damaged(&mut self) {
+        if self.is_listening() {
+            self.error(CRC16);
         }
     }
 
