@@ -239,7 +239,8 @@ impl Chip {
         self.hear_the_sensor();
         if now >= self.host.next_event() {
             let clocked = self.usb_clocked();
-            self.host.advance(now, clocked, &mut self.usb, &self.ram);
+            self.host
+                .advance(now, clocked, &mut self.usb, &self.ram, &mut self.witness);
         }
     }
 
@@ -391,7 +392,7 @@ impl Chip {
                     .write(offset, byte, (now, bus_hz), &self.pins, &mut self.witness);
             }
             0x72 => {
-                self.usb.write(offset, byte);
+                self.usb.write(offset, byte, &mut self.witness);
                 self.judge_usb_clock();
             }
             0xFF => self.pins.write_gpio(offset, value),

@@ -167,6 +167,14 @@ mod assembly {
         unsafe { asm!(".inst.w 0xEE000A10") }
     }
 
+    /// Sleeps, whatever happens.
+    pub fn sleep() -> ! {
+        loop {
+            // SAFETY: waits for an interrupt.
+            unsafe { asm!("wfi") }
+        }
+    }
+
     /// Executes UDF.
     pub fn undefined_instruction() {
         // SAFETY: the processor faults.

@@ -10,7 +10,7 @@ wrong_images::image!({
     wait_for_sensor();
     write_sensor(SENSOR, 0x37, 0x02);
     write_sensor(MAGNETOMETER, 0x0A, 0x16);
-    loop {
+    for _ in 0..100 {
         pause(200_000);
         read_sensor(MAGNETOMETER, 0x03);
     }
