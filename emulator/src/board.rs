@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use crate::chip::{Chip, INTERRUPTS};
+use crate::chip::Chip;
 use crate::cpu::{Cpu, PeripheralBus};
 use crate::image::Image;
 use crate::motion::Motion;
@@ -100,7 +100,9 @@ pub struct Board {
     remainder: u64,
     core_hz: u32,
     next_event: Ticks,
-    asserted: [bool; INTERRUPTS.len()],
+    /// Interrupt requests as the processor has them, one bit each.
+    asserted: u128,
+    flash_hidden: bool,
     asleep: bool,
     awake_for: Ticks,
     instructions: u64,
@@ -115,9 +117,8 @@ pub struct Board {
 impl Board {
     /// A board at power-on with `image` in its flash.
     pub fn new(image: Image, setup: Setup) -> Board {
-        let configuration = [image.flash[0x40C], image.flash[0x40D]];
         let sensor = Mpu9250::new(setup.motion, setup.who_am_i, setup.sensor_clock_error);
-        let chip = Chip::new(sensor, configuration);
+        let chip = Chip::new(sensor, &image.flash);
         let ram = chip.ram.clone();
         let core_hz = chip.core_hz();
         let shared = Arc::new(Shared {
@@ -138,7 +139,8 @@ impl Board {
             remainder: 0,
             core_hz,
             next_event: 0,
-            asserted: [false; INTERRUPTS.len()],
+            asserted: 0,
+            flash_hidden: false,
             asleep: false,
             awake_for: 0,
             instructions: 0,
@@ -234,12 +236,17 @@ impl Board {
             self.reset(cause, why);
             return;
         }
-        for (line, number) in self.asserted.iter_mut().zip(INTERRUPTS) {
-            let level = chip.interrupt(number);
-            if *line != level {
-                *line = level;
-                self.cpu.set_irq(number, level);
-            }
+        let lines = chip.interrupts();
+        let mut changed = lines ^ std::mem::replace(&mut self.asserted, lines);
+        while changed != 0 {
+            let number = changed.trailing_zeros();
+            self.cpu.set_irq(number as u16, lines >> number & 1 != 0);
+            changed &= changed - 1;
+        }
+        let hidden = chip.flash.hides_flash();
+        if hidden != std::mem::replace(&mut self.flash_hidden, hidden) {
+            self.cpu
+                .show_flash((!hidden).then_some(&chip.flash.memory.program));
         }
         let core_hz = chip.core_hz();
         if core_hz != self.core_hz {
@@ -288,7 +295,7 @@ impl Board {
         self.cpu.reset();
         self.remainder = 0;
         self.next_event = self.now;
-        self.asserted = [false; INTERRUPTS.len()];
+        self.asserted = 0;
         self.asleep = false;
     }
 

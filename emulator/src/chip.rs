@@ -1,17 +1,38 @@
 //! The chip around the processor: which peripheral answers at which address, its clock gate, its interrupt, and what
 //! the board connects to it.
 
+mod analog;
+
+mod communication;
+
+mod interrupts;
+
+mod registers;
+
+mod timers;
+
+mod transfers;
+
+pub use analog::Analog;
+pub use communication::Communication;
+pub use timers::Timers;
+
 use crate::cpu::Ram;
 use crate::host::Host;
 use crate::mpu9250::Mpu9250;
-use crate::peripherals::ftfl::FlashController;
+use crate::peripherals::crc::CrcGenerator;
+use crate::peripherals::dma::Dma;
+use crate::peripherals::dmamux::DmaMux;
+use crate::peripherals::ftfl::{FlashController, Memory};
 use crate::peripherals::i2c::I2c;
 use crate::peripherals::mcg::ClockGenerator;
-use crate::peripherals::pins::Pins;
+use crate::peripherals::pins::{self, Pins};
 use crate::peripherals::pit::IntervalTimer;
 use crate::peripherals::rcm::{Cause, ResetControl};
 use crate::peripherals::register_file::RegisterFile;
 use crate::peripherals::sim::SystemIntegration;
+use crate::peripherals::smc::ModeController;
+use crate::peripherals::tsi::TouchSensing;
 use crate::peripherals::usbotg::UsbController;
 use crate::peripherals::wdog::Watchdog;
 use crate::time::{self, NEVER, Ticks};
@@ -66,23 +87,6 @@ const SLOTS: &[Slot] = &[
     slot(0xCC, "DAC0", Some((2, 12)), 0),        slot(0xFF, "GPIO", None, 4),
 ];
 
-/// Interrupt numbers (K20 manual, table 3-4).
-mod irq {
-    pub const I2C0: u16 = 24;
-    pub const PIT0: u16 = 68;
-    pub const USBOTG: u16 = 73;
-}
-
-/// Interrupts the modelled peripherals can raise.
-pub const INTERRUPTS: [u16; 6] = [
-    irq::I2C0,
-    irq::PIT0,
-    irq::PIT0 + 1,
-    irq::PIT0 + 2,
-    irq::PIT0 + 3,
-    irq::USBOTG,
-];
-
 /// Every peripheral, the sensor, and the host.
 #[derive(Debug)]
 pub struct Chip {
@@ -106,9 +110,26 @@ pub struct Chip {
     sim: SystemIntegration,
     timer: IntervalTimer,
     reset_control: ResetControl,
-    flash: FlashController,
+    /// The flash module with its memories.
+    pub flash: FlashController,
+    /// Converters and what is connected to them.
+    pub analog: Analog,
+    /// Timers beside the interval timer.
+    pub timers: Timers,
+    /// Serial interfaces beside USB and the sensor bus.
+    pub communication: Communication,
+    /// Touch sensing.
+    pub touch: TouchSensing,
+    modes: ModeController,
+    crc: CrcGenerator,
+    dma: Dma,
+    dma_mux: DmaMux,
+    dma_free_at: Ticks,
+    /// The RTC's seconds interrupt is a pulse.
+    second: bool,
+    /// Register files that a system reset leaves alone.
+    kept: RegisterFile,
     rest: RegisterFile,
-    flash_configuration: [u8; 2],
     /// Why the chip has to be reset now.
     pub reset_wanted: Option<(Cause, &'static str)>,
     /// What the program did that silicon does not forgive.
@@ -116,8 +137,8 @@ pub struct Chip {
 }
 
 impl Chip {
-    /// The chip at power-on; `flash_configuration` holds FSEC and FOPT.
-    pub fn new(sensor: Mpu9250, flash_configuration: [u8; 2]) -> Chip {
+    /// The chip at power-on with `program` in its flash.
+    pub fn new(sensor: Mpu9250, program: &[u8]) -> Chip {
         let clocks = ClockGenerator::new();
         let bus_hz = clocks.output_hz(0);
         Chip {
@@ -134,18 +155,22 @@ impl Chip {
             sim: SystemIntegration::new(),
             timer: IntervalTimer::new(),
             reset_control: ResetControl::new(Cause::PowerOn),
-            flash: Chip::flash(flash_configuration),
+            flash: FlashController::new(Memory::new(program)),
+            analog: Analog::new(),
+            timers: Timers::new(),
+            communication: Communication::new(),
+            touch: TouchSensing::new(),
+            modes: ModeController::new(),
+            crc: CrcGenerator::new(),
+            dma: Dma::new(),
+            dma_mux: DmaMux::default(),
+            dma_free_at: 0,
+            second: false,
+            kept: RegisterFile::default(),
             rest: RegisterFile::default(),
-            flash_configuration,
             reset_wanted: None,
             witness: Witness::default(),
         }
-    }
-
-    fn flash([security, option]: [u8; 2]) -> FlashController {
-        /// Any number will do; a real board's is programmed at PJRC.
-        const SERIAL_NUMBER: u32 = 490_000;
-        FlashController::new(SERIAL_NUMBER, security, option)
     }
 
     /// A system reset: peripherals return to their reset state; SRAM, sensor and host live on.
@@ -161,7 +186,16 @@ impl Chip {
         self.usb.reset();
         self.timer = IntervalTimer::new();
         self.reset_control = ResetControl::new(cause);
-        self.flash = Chip::flash(self.flash_configuration);
+        self.flash.reset();
+        self.sim.set_partition(self.flash.memory.configuration());
+        self.analog.reset();
+        self.timers.reset();
+        self.communication.reset();
+        self.touch.reset();
+        self.modes = ModeController::new();
+        self.crc = CrcGenerator::new();
+        self.dma = Dma::new();
+        self.dma_mux = DmaMux::default();
         self.rest = RegisterFile::default();
         self.reset_wanted = None;
     }
@@ -187,6 +221,13 @@ impl Chip {
             self.timer.next_event(),
             self.i2c.next_event(),
             self.host.next_event(),
+            self.flash.next_event(),
+            self.analog.next_event(),
+            self.timers.next_event(),
+            self.communication.next_event(),
+            self.touch.next_event(),
+            self.next_transfer(),
+            if self.second { self.now } else { NEVER },
         ]
         .into_iter()
         .min()
@@ -200,6 +241,7 @@ impl Chip {
             self.watchdog_bites(trap);
         }
         self.timer.advance(now, bus_hz);
+        self.advance_modules();
         self.i2c.advance(now, &self.pins, &mut self.sensor);
         if now >= self.host.next_event() {
             let clocked = self.usb_clocked();
@@ -213,13 +255,46 @@ impl Chip {
             .get_or_insert((Cause::Watchdog, trap.rule()));
     }
 
-    /// Whether interrupt `number` is asserted.
-    pub fn interrupt(&self, number: u16) -> bool {
-        match number {
-            irq::I2C0 => self.i2c.interrupt(),
-            irq::USBOTG => self.usb.interrupt(),
-            _ => self.timer.interrupt(usize::from(number - irq::PIT0)),
+    fn advance_modules(&mut self) {
+        let clocks = self.clocks();
+        self.flash.advance(self.now);
+        self.timers.advance(&clocks);
+        self.second = self.timers.rtc.take_second();
+        for (converter, trigger) in self.timers.delay.advance(self.now) {
+            self.analog.converters[converter].trigger(trigger, &clocks);
         }
+        self.analog.advance(&clocks);
+        self.communication.advance(&self.pins, &clocks);
+        self.touch.advance(self.now);
+        for channel in self.timer.take_expired() {
+            self.dma_mux.trigger(channel);
+        }
+        self.transfer();
+    }
+
+    /// Drives pin `number` of the board (0 to 33) from outside, or lets go of it.
+    pub fn drive(&mut self, number: u8, level: Option<bool>) {
+        let Some((port, bit)) = pins::board_pin(number) else {
+            return;
+        };
+        let before = self.pins.level(port, bit);
+        self.pins.drive(port, bit, level);
+        let after = self.pins.level(port, bit);
+        if before != after {
+            self.timers.edge(&self.pins, (port, bit), after, self.now);
+        }
+    }
+
+    /// Level of pin `number` of the board (0 to 33).
+    pub fn level(&mut self, number: u8) -> bool {
+        self.timers.show(&mut self.pins, self.now);
+        pins::board_pin(number).is_some_and(|(port, bit)| self.pins.level(port, bit))
+    }
+
+    /// Puts bytes on the receive line of UART `n` (Serial1 is 0); `false` if no pin is connected to it.
+    pub fn send_serial(&mut self, n: usize, bytes: &[u8]) -> bool {
+        let clocks = self.clocks();
+        self.communication.receive(n, bytes, &self.pins, &clocks)
     }
 
     fn find(&mut self, address: u32, width: u8, write: bool) -> Option<&'static Slot> {
@@ -260,6 +335,9 @@ impl Chip {
 
     /// A read by the processor; `None` is a bus fault.
     pub fn read(&mut self, address: u32, width: u8) -> Option<u32> {
+        if let Some(answer) = self.read_flash_module(address, width) {
+            return answer;
+        }
         let slot = self.find(address, width, false)?;
         let (now, bus_hz, offset) = (self.now, self.bus_hz(), address & 0xFFF);
         Some(match slot.page {
@@ -272,19 +350,27 @@ impl Chip {
             0x66 => self.i2c.read(offset, now, bus_hz),
             0x72 => self.usb.read(offset),
             0x7F => self.reset_control.read(offset),
-            0xFF => self.pins.read_gpio(offset),
-            _ => self.rest.read(address, width),
+            0xFF => {
+                self.timers.show(&mut self.pins, now);
+                self.pins.read_gpio(offset)
+            }
+            _ => self.read_module(address, width),
         })
     }
 
     /// A write by the processor; `false` is a bus fault.
     pub fn write(&mut self, address: u32, width: u8, value: u32) -> bool {
+        if let Some(answer) = self.write_flash_module(address, width, value) {
+            return answer;
+        }
         let Some(slot) = self.find(address, width, true) else {
             return false;
         };
         let (now, bus_hz, offset, byte) = (self.now, self.bus_hz(), address & 0xFFF, value as u8);
         match slot.page {
-            0x20 => self.flash.write(offset, byte),
+            0x20 => self
+                .flash
+                .write(offset, width, value, now, &mut self.witness),
             0x37 => self.timer.write(offset, value, now, bus_hz),
             0x47 | 0x48 => self.sim.write(address - 0x4004_7000, value),
             page @ 0x49..=0x4D => self.pins.write_port(page as usize - 0x49, offset, value),
@@ -300,7 +386,7 @@ impl Chip {
             0x66 => self.i2c.write(offset, byte, now, bus_hz, &self.pins),
             0x72 => self.usb.write(offset, byte),
             0xFF => self.pins.write_gpio(offset, value),
-            _ => self.rest.write(address, width, value),
+            _ => self.write_module(address, width, value),
         }
         true
     }

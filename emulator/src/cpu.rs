@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use rsemu::core::error::BusError;
 use rsemu::core::space::{
-    AccessConstraints, AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite,
+    AccessConstraints, AddressSpace, Mapping, MappingId, MemAttrs, MemOps, RamStore, Region,
+    RomStore, RomWrite,
 };
 use rsemu::core::value::{Endian, Width};
 use rsemu::cpu::arm::v7m::{ArmV7m, Config};
@@ -22,14 +23,17 @@ pub const FLASH_SIZE: u32 = 256 * 1024;
 
 const PERIPHERALS_BASE: u32 = 0x4000_0000;
 const PERIPHERALS_SIZE: u32 = 0x0010_0000;
-const FLEXRAM_BASE: u32 = 0x1400_0000;
-const FLEXRAM_SIZE: u64 = 2 * 1024;
+/// FlexNVM and FlexRAM, which the flash module answers for.
+const FLEX_REGIONS: [(&str, u32, u64); 2] = [
+    ("flexnvm", 0x1000_0000, 32 * 1024),
+    ("flexram", 0x1400_0000, 2 * 1024),
+];
 
 /// xPSR: ITSTATE, in its two places, and the number of the exception being handled.
 const IT_STATE: u32 = 0x0600_FC00;
 const EXCEPTION: u32 = 0x1FF;
 
-/// What answers the processor's accesses to the peripheral bridges.
+/// What answers the processor's accesses to the peripheral bridges and to the flash module's memories.
 pub trait PeripheralBus: Send + Sync + std::fmt::Debug {
     /// Reads `width` bytes; `None` is a bus error.
     fn read(&self, address: u32, width: u8) -> Option<u32>;
@@ -105,41 +109,57 @@ impl Default for Ram {
 pub struct Cpu {
     core: ArmV7m,
     space: Arc<AddressSpace>,
+    flash: MappingId,
+    peripherals: Arc<dyn PeripheralBus>,
 }
 
 impl Cpu {
     /// A processor about to leave reset, with `flash` at address 0.
     pub fn new(flash: &[u8], ram: &Ram, peripherals: Arc<dyn PeripheralBus>) -> Cpu {
         let space = AddressSpace::new("K20", 32);
-        {
+        let bridge = |name: &str, base: u32, size: u64| {
+            let bridge = Bridge(Arc::clone(&peripherals), base);
+            Region::io(name, size, Arc::new(bridge))
+        };
+        let flash = {
             let mut map = space.topology();
-            let rom = Arc::new(RomStore::from_slice(flash));
-            let regions = [
-                (0, Region::rom("flash", rom, RomWrite::Fault)),
-                (RAM_BASE, Region::ram("sram", Arc::clone(&ram.0))),
-                (
-                    FLEXRAM_BASE,
-                    Region::ram("flexram", Arc::new(RamStore::new(FLEXRAM_SIZE))),
-                ),
-                (
-                    PERIPHERALS_BASE,
-                    Region::io(
-                        "peripherals",
-                        u64::from(PERIPHERALS_SIZE),
-                        Arc::new(Bridge(peripherals)),
-                    ),
-                ),
-            ];
-            for (base, region) in regions {
+            let mut place = |region: Region, base: u32| {
                 map.map(region, u64::from(base))
-                    .expect("the chip's regions do not overlap");
+                    .expect("the chip's regions do not overlap")
+            };
+            place(Region::ram("sram", Arc::clone(&ram.0)), RAM_BASE);
+            place(
+                bridge("peripherals", PERIPHERALS_BASE, u64::from(PERIPHERALS_SIZE)),
+                PERIPHERALS_BASE,
+            );
+            for (name, base, size) in FLEX_REGIONS {
+                place(bridge(name, base, size), base);
             }
-        }
+            place(readable(flash), 0)
+        };
         let space = Arc::new(space);
         Cpu {
             core: Cpu::core(&space),
             space,
+            flash,
+            peripherals,
         }
+    }
+
+    /// Shows the processor new contents of its flash, or hides them while a command works on the flash: every access
+    /// then goes to the flash module.
+    pub fn show_flash(&self, contents: Option<&[u8]>) {
+        let region = match contents {
+            Some(contents) => readable(contents),
+            None => {
+                let bridge = Bridge(Arc::clone(&self.peripherals), 0);
+                Region::io("flash at work", u64::from(FLASH_SIZE), Arc::new(bridge))
+            }
+        };
+        self.space
+            .topology()
+            .replace(self.flash, Mapping::new(region, 0))
+            .expect("the region is as large as the one before");
     }
 
     fn core(space: &Arc<AddressSpace>) -> ArmV7m {
@@ -277,9 +297,18 @@ impl Cpu {
     }
 }
 
-/// Adapts [`PeripheralBus`] to the engine's idea of a memory-mapped device.
+/// Flash that can be read and executed, but not stored to.
+fn readable(contents: &[u8]) -> Region {
+    Region::rom(
+        "flash",
+        Arc::new(RomStore::from_slice(contents)),
+        RomWrite::Fault,
+    )
+}
+
+/// Adapts [`PeripheralBus`] to the engine's idea of a memory-mapped device at an address.
 #[derive(Debug)]
-struct Bridge(Arc<dyn PeripheralBus>);
+struct Bridge(Arc<dyn PeripheralBus>, u32);
 
 impl MemOps for Bridge {
     fn read(&self, offset: u64, dst: &mut [u8], attrs: MemAttrs) -> Result<(), BusError> {
@@ -289,7 +318,7 @@ impl MemOps for Bridge {
         }
         let value = self
             .0
-            .read(PERIPHERALS_BASE + offset as u32, dst.len() as u8)
+            .read(self.1 + offset as u32, dst.len() as u8)
             .ok_or(BusError::BadAccess)?;
         dst.copy_from_slice(&value.to_le_bytes()[..dst.len()]);
         Ok(())
@@ -302,7 +331,7 @@ impl MemOps for Bridge {
         let mut bytes = [0; 4];
         bytes[..src.len()].copy_from_slice(src);
         let accepted = self.0.write(
-            PERIPHERALS_BASE + offset as u32,
+            self.1 + offset as u32,
             src.len() as u8,
             u32::from_le_bytes(bytes),
         );
@@ -316,6 +345,6 @@ impl MemOps for Bridge {
     fn constraints(&self) -> AccessConstraints {
         AccessConstraints::IO
             .with_widths(Width::U8, Width::U32)
-            .with_natural_alignment(true)
+            .with_natural_alignment(self.1 == PERIPHERALS_BASE)
     }
 }

@@ -95,6 +95,24 @@ impl ClockGenerator {
         }
     }
 
+    /// MCGFFCLK, the FLL's reference: the crystal behind FRDIV, or the slow internal clock.
+    pub fn fixed_hz(&self, now: Ticks) -> u32 {
+        if self.registers[C1] & 0x04 != 0 || !self.crystal_runs(now) {
+            return SLOW_IRC_HZ;
+        }
+        CRYSTAL_HZ
+            / [32, 64, 128, 256, 512, 1024, 1280, 1536][usize::from(self.registers[C1] >> 3 & 7)]
+    }
+
+    /// MCGIRCLK: the slow internal clock, or half the fast one (FCRDIV is not looked at).
+    pub fn internal_hz(&self) -> u32 {
+        if self.registers[C2] & 1 != 0 {
+            FAST_IRC_HZ / 2
+        } else {
+            SLOW_IRC_HZ
+        }
+    }
+
     fn status(&self, now: Ticks) -> u8 {
         let crystal = self.crystal_runs(now);
         let pll_selected = self.registers[C6] & 0x40 != 0;
