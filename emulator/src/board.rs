@@ -1,46 +1,26 @@
 //! A whole board that runs: processor and chip in step, resets, and what happened on the way.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard};
+pub mod measure;
 
-use crate::chip::Chip;
-use crate::cpu::{Cpu, PeripheralBus};
+mod polling;
+
+pub mod setup;
+
+mod shared;
+
+use std::sync::{Arc, MutexGuard};
+
+use crate::chip::{Chip, INTERRUPTS};
+use crate::cpu::{Cpu, Fault, Pace, PeripheralBus, Step};
 use crate::image::Image;
-use crate::motion::Motion;
 use crate::mpu9250::Mpu9250;
 use crate::peripherals::rcm::Cause;
 use crate::time::{self, SECOND, Ticks};
 use crate::witness::{Offence, Stop, Trap};
-
-/// How the board is put together.
-pub struct Setup {
-    /// What the sensor experiences, from power-on.
-    pub motion: Box<dyn Motion>,
-    /// The sensor's identity: 0x71 is an MPU-9250.
-    pub who_am_i: u8,
-    /// Relative error of the sensor's oscillator (specification: within ±1 %).
-    pub sensor_clock_error: f64,
-    /// Traps that do not stop the run: the board goes on as silicon would.
-    pub allowed: Vec<Trap>,
-}
-
-impl Setup {
-    /// A board with a perfect MPU-9250 moved by `motion`; every trap stops it.
-    pub fn new(motion: Box<dyn Motion>) -> Setup {
-        Setup {
-            motion,
-            who_am_i: 0x71,
-            sensor_clock_error: 0.0,
-            allowed: Vec::new(),
-        }
-    }
-
-    /// The same board, which goes on as silicon would after stepping into one of these traps.
-    pub fn allowing(mut self, traps: &[Trap]) -> Setup {
-        self.allowed.extend(traps);
-        self
-    }
-}
+use measure::{Measure, Moment};
+use polling::Polling;
+pub use setup::Setup;
+use shared::Shared;
 
 /// Something worth telling, with the time it happened at.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -57,38 +37,6 @@ impl std::fmt::Display for Event {
     }
 }
 
-/// What the processor and the chip share: the processor holds its own lock while it reaches for a register.
-#[derive(Debug)]
-struct Shared {
-    chip: Mutex<Chip>,
-    now: AtomicU64,
-    /// A register was touched, so events and interrupts have to be looked at again.
-    touched: AtomicBool,
-}
-
-impl Shared {
-    fn chip(&self) -> MutexGuard<'_, Chip> {
-        let mut chip = self
-            .chip
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        chip.now = self.now.load(Ordering::Relaxed);
-        chip
-    }
-}
-
-impl PeripheralBus for Shared {
-    fn read(&self, address: u32, width: u8) -> Option<u32> {
-        self.touched.store(true, Ordering::Relaxed);
-        self.chip().read(address, width)
-    }
-
-    fn write(&self, address: u32, width: u8, value: u32) -> bool {
-        self.touched.store(true, Ordering::Relaxed);
-        self.chip().write(address, width, value)
-    }
-}
-
 /// The board.
 #[derive(Debug)]
 pub struct Board {
@@ -99,19 +47,32 @@ pub struct Board {
     /// Remainder of the conversion from cycles to ticks, in ticks × hertz.
     remainder: u64,
     core_hz: u32,
+    /// The core clock over the flash clock.
+    flash_ratio: u32,
     next_event: Ticks,
     /// Interrupt requests as the processor has them, one bit each.
     asserted: u128,
     flash_hidden: bool,
-    asleep: bool,
-    awake_for: Ticks,
     instructions: u64,
     resets: u32,
     events: Vec<Event>,
+    pace: Pace,
     allowed: Vec<Trap>,
     stop: Option<Stop>,
     /// Address of the instruction that is being executed, or was last.
     pc: u32,
+    measure: Measure,
+    storm: Storm,
+    polling: Option<Polling>,
+    /// Where the image's variables end: below this the stack must not grow.
+    stack_limit: u32,
+}
+
+/// Entries of one exception since the program last got anywhere.
+#[derive(Debug, Clone, Copy, Default)]
+struct Storm {
+    exception: u16,
+    entries: u32,
 }
 
 impl Board {
@@ -121,16 +82,15 @@ impl Board {
         let chip = Chip::new(sensor, &image.flash);
         let ram = chip.ram.clone();
         let core_hz = chip.core_hz();
-        let shared = Arc::new(Shared {
-            chip: Mutex::new(chip),
-            now: AtomicU64::new(0),
-            touched: AtomicBool::new(true),
-        });
+        let shared = Arc::new(Shared::new(chip));
         let cpu = Cpu::new(
             &image.flash,
             &ram,
             Arc::clone(&shared) as Arc<dyn PeripheralBus>,
+            setup.pace,
         );
+        let timed = image.address_of(&setup.timed_function);
+        let stack_limit = image.data_end();
         Board {
             cpu,
             shared,
@@ -138,17 +98,21 @@ impl Board {
             now: 0,
             remainder: 0,
             core_hz,
+            flash_ratio: 1,
             next_event: 0,
             asserted: 0,
             flash_hidden: false,
-            asleep: false,
-            awake_for: 0,
             instructions: 0,
             resets: 0,
             events: Vec::new(),
+            pace: setup.pace,
             allowed: setup.allowed,
             stop: None,
             pc: 0,
+            measure: Measure::new(timed),
+            storm: Storm::default(),
+            polling: setup.skip_polling.then(Polling::default),
+            stack_limit,
         }
     }
 
@@ -157,41 +121,159 @@ impl Board {
     pub fn run(&mut self, span: Ticks) {
         let until = self.now.saturating_add(span);
         while self.now < until && self.stop.is_none() {
-            if self.now >= self.next_event || self.shared.touched.load(Ordering::Relaxed) {
+            if self.now >= self.next_event || self.shared.is_touched() {
                 self.service();
             }
-            if self.asleep {
+            if self.cpu.is_asleep() {
                 self.sleep(until);
             } else {
-                self.step();
+                self.step(until);
             }
         }
     }
 
-    fn step(&mut self) {
+    fn step(&mut self, until: Ticks) {
+        let (exception, stack) = (self.cpu.exception(), self.cpu.stack_pointer());
         self.pc = self.cpu.pc();
-        let cycles = self.cpu.step();
+        let step = self.cpu.step(self.flash_ratio);
         self.instructions += 1;
-        let ticks = self.pass(cycles);
-        self.awake_for += ticks;
-        if self.cpu.is_asleep() {
-            self.asleep = true;
-        } else if self.cpu.is_locked_up() {
+        self.pass(self.pace.of(step.cycles));
+        self.measure.awake(step.cycles, self.core_hz);
+        let moment = Moment {
+            pc: self.pc,
+            exception,
+            stack,
+            link: self.cpu.registers_before().0[14],
+            next: self.cpu.pc(),
+            next_stack: self.cpu.stack_pointer(),
+        };
+        self.measure.follow(&moment, step.cycles);
+        if moment.next_stack < self.measure.stack_low {
+            self.lower_stack(moment.next_stack);
+        }
+        let now_in = self.cpu.exception();
+        if now_in != exception {
+            self.change_exception(exception, now_in, moment.next_stack < stack);
+        } else {
+            self.look_for_polling(&step, until);
+        }
+        if let Some(fault) = self.cpu.take_fault() {
+            self.take_fault(fault);
+        }
+        if self.cpu.is_locked_up() {
             self.reset(
                 Cause::Lockup,
                 "the processor locked up: a fault within a fault handler",
             );
-        } else if self.cpu.wants_reset() {
+        } else if step.access.is_some_and(|access| access.address == AIRCR)
+            && self.cpu.wants_reset()
+        {
             self.reset(Cause::Software, "the program asked for it (SYSRESETREQ)");
+        }
+    }
+
+    /// The processor has gone from one exception to another; it entered one unless it came back.
+    fn change_exception(&mut self, from: u16, to: u16, pushed: bool) {
+        /// So many entries without a single instruction of the program between them are no accident.
+        const STORM: u32 = 20_000;
+        if let Some(polling) = &mut self.polling {
+            polling.disturb();
+        }
+        // Tail-chaining pushes nothing, but goes from one interrupt straight to another.
+        if to != 0 && (pushed || from != 0) {
+            if let Some(number) = to.checked_sub(16) {
+                self.measure.entered(number, self.now);
+            }
+            if self.storm.exception == to {
+                self.storm.entries += 1;
+            } else {
+                self.storm = Storm {
+                    exception: to,
+                    entries: 1,
+                };
+            }
+        }
+        if self.storm.entries == STORM {
+            let what = format!(
+                "exception {} was taken {STORM} times, and the program did not get anywhere between",
+                self.storm.exception
+            );
+            self.judge(vec![Offence {
+                trap: Trap::InterruptStorm,
+                what,
+            }]);
+        }
+    }
+
+    /// The main stack has never been this deep.
+    fn lower_stack(&mut self, stack: u32) {
+        let before = std::mem::replace(&mut self.measure.stack_low, stack);
+        if stack < self.stack_limit && before >= self.stack_limit {
+            let what = format!(
+                "the stack pointer is {stack:#010x}, but variables end at {:#010x}",
+                self.stack_limit
+            );
+            self.judge(vec![Offence {
+                trap: Trap::StackIntoData,
+                what,
+            }]);
+        }
+    }
+
+    /// A fault on the peripheral bridges has been told by who saw it there.
+    fn take_fault(&mut self, fault: Fault) {
+        let told = !self.shared.chip().witness.is_empty();
+        if !told {
+            self.judge(vec![Offence {
+                trap: fault.trap,
+                what: fault.what,
+            }]);
+        }
+    }
+
+    fn look_for_polling(&mut self, step: &Step, until: Ticks) {
+        let Some(polling) = &mut self.polling else {
+            return;
+        };
+        if let Some(access) = step.access
+            && access.address >= PERIPHERALS
+            && (access.store || !self.shared.chip().is_steady(access.address))
+        {
+            polling.give_up();
+            return;
+        }
+        let (before, after) = (self.cpu.registers_before(), self.cpu.registers());
+        let Some(round) = polling.step(before, step.cycles, after) else {
+            return;
+        };
+        let wake = self.next_event.min(until);
+        let per_round = self.pace.of(round.cycles);
+        let cycles = u128::from(wake.saturating_sub(self.now)) * u128::from(self.core_hz)
+            / u128::from(SECOND);
+        let cycles = (cycles as u64).min(self.cpu.cycles_to_systick().unwrap_or(u64::MAX));
+        // The last round before the event is executed like any other.
+        let rounds = (cycles / per_round).saturating_sub(1);
+        if rounds > 0 {
+            self.cpu.idle(rounds * per_round);
+            self.pass(rounds * per_round);
+            self.instructions += rounds * round.instructions;
+            let mut sum = round.cycles;
+            sum.least *= rounds;
+            sum.greatest *= rounds;
+            self.measure.awake(sum, self.core_hz);
         }
     }
 
     /// Sleeps until something happens; one idle step lets the processor look at its interrupts.
     fn sleep(&mut self, until: Ticks) {
-        let cycles = self.cpu.step();
-        self.pass(cycles);
+        let exception = self.cpu.exception();
+        let step = self.cpu.step(self.flash_ratio);
+        self.pass(self.pace.of(step.cycles));
         if !self.cpu.is_asleep() {
-            self.asleep = false;
+            let now_in = self.cpu.exception();
+            if now_in != exception {
+                self.change_exception(exception, now_in, true);
+            }
             return;
         }
         let wake = self.next_event.min(until);
@@ -207,41 +289,42 @@ impl Board {
         self.pass(cycles);
     }
 
-    /// Lets `cycles` of the core pass; returns the ticks they took.
-    fn pass(&mut self, cycles: u64) -> Ticks {
+    /// Lets `cycles` of the core pass.
+    fn pass(&mut self, cycles: u64) {
         let scaled = cycles * SECOND + self.remainder;
         let hz = u64::from(self.core_hz);
-        let ticks = scaled / hz;
         self.remainder = scaled % hz;
-        self.now += ticks;
-        self.shared.now.store(self.now, Ordering::Relaxed);
-        ticks
+        self.now += scaled / hz;
+        self.shared.set_now(self.now);
     }
 
     /// Lets the chip do what is due and carries its interrupts to the processor.
     fn service(&mut self) {
-        self.shared.touched.store(false, Ordering::Relaxed);
+        self.shared.look();
         let shared = Arc::clone(&self.shared);
         let mut chip = shared.chip();
         chip.advance();
-        let offences = chip.witness.take();
-        let reset = chip.reset_wanted.take();
-        if !offences.is_empty() {
+        if !chip.witness.is_empty() {
+            let offences = chip.witness.take();
             drop(chip);
             self.judge(offences);
             chip = shared.chip();
         }
-        if let Some((cause, why)) = reset {
+        if let Some((cause, why)) = chip.reset_wanted.take() {
             drop(chip);
             self.reset(cause, why);
             return;
         }
         let lines = chip.interrupts();
-        let mut changed = lines ^ std::mem::replace(&mut self.asserted, lines);
-        while changed != 0 {
-            let number = changed.trailing_zeros();
-            self.cpu.set_irq(number as u16, lines >> number & 1 != 0);
-            changed &= changed - 1;
+        let changed = lines ^ std::mem::replace(&mut self.asserted, lines);
+        if changed != 0 {
+            for (index, number) in INTERRUPTS.into_iter().enumerate() {
+                if changed >> number & 1 != 0 {
+                    let level = lines >> number & 1 != 0;
+                    self.measure.line(index, level, self.now);
+                    self.cpu.set_irq(number, level);
+                }
+            }
         }
         let hidden = chip.flash.hides_flash();
         if hidden != std::mem::replace(&mut self.flash_hidden, hidden) {
@@ -253,6 +336,7 @@ impl Board {
             self.core_hz = core_hz;
             self.remainder = 0;
         }
+        self.flash_ratio = chip.flash_ratio();
         self.next_event = chip.next_event();
     }
 
@@ -285,18 +369,24 @@ impl Board {
             Cause::Watchdog => "the watchdog resets the chip: ",
             _ => "the chip is reset: ",
         };
-        let what = format!("{by}{why}; the program was at {}", self.place_of(self.pc));
+        let place = self.place_of(self.pc);
+        let what = format!("{by}{why}; the program was at {place}");
         self.events.push(Event { at: self.now, what });
         self.resets += 1;
         let mut chip = self.shared.chip();
         chip.reset(cause);
         self.core_hz = chip.core_hz();
+        self.flash_ratio = chip.flash_ratio();
         drop(chip);
         self.cpu.reset();
         self.remainder = 0;
         self.next_event = self.now;
         self.asserted = 0;
-        self.asleep = false;
+        self.measure.reset();
+        self.storm = Storm::default();
+        if let Some(polling) = &mut self.polling {
+            polling.disturb();
+        }
     }
 
     /// An address for people.
@@ -310,7 +400,7 @@ impl Board {
     /// The chip and what is connected to it.
     pub fn chip(&mut self) -> MutexGuard<'_, Chip> {
         // The caller may change anything, so everything is looked at again.
-        self.shared.touched.store(true, Ordering::Relaxed);
+        self.shared.touch();
         self.next_event = self.now;
         self.shared.chip()
     }
@@ -324,7 +414,6 @@ impl Board {
     /// Makes the program continue at `address`, awake.
     pub fn jump(&mut self, address: u32) {
         self.cpu.set_pc(address & !1);
-        self.asleep = false;
     }
 
     /// The image in flash.
@@ -337,9 +426,9 @@ impl Board {
         self.now
     }
 
-    /// Time during which the processor did not sleep.
-    pub fn awake_for(&self) -> Ticks {
-        self.awake_for
+    /// What the run is measured by.
+    pub fn measure(&self) -> &Measure {
+        &self.measure
     }
 
     /// Instructions and exception entries executed.
@@ -363,3 +452,9 @@ impl Board {
         self.shared.chip().ram.word(address)
     }
 }
+
+/// Application interrupt and reset control register (ARMv7-M, B3.2.6).
+const AIRCR: u32 = 0xE000_ED0C;
+
+/// From here on there are registers.
+const PERIPHERALS: u32 = 0x4000_0000;

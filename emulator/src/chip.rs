@@ -15,6 +15,7 @@ mod transfers;
 
 pub use analog::Analog;
 pub use communication::Communication;
+pub use interrupts::INTERRUPTS;
 pub use timers::Timers;
 
 use crate::cpu::Ram;
@@ -203,6 +204,12 @@ impl Chip {
     /// The processor's clock.
     pub fn core_hz(&self) -> u32 {
         self.sim.divide(self.clocks.output_hz(self.now)).0
+    }
+
+    /// The core clock over the flash clock.
+    pub fn flash_ratio(&self) -> u32 {
+        let (core, _, flash) = self.sim.divide(self.clocks.output_hz(self.now));
+        core.checked_div(flash).unwrap_or(1).max(1)
     }
 
     fn bus_hz(&self) -> u32 {

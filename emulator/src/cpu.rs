@@ -1,16 +1,31 @@
 //! The processor: a Cortex-M4 without FPU or MPU, executed by `rsemu` behind this module's own interface.
 //!
-//! `rsemu` is young (0.0.x), so nothing outside this file knows it.
+//! `rsemu` is young (0.0.x), so nothing outside this folder knows it. Around it this module adds what the engine does
+//! not have: the band of cycle counts ([`timing`]), names for faults, and the repair of ITSTATE.
+
+mod fault;
+
+pub mod flash_cache;
+
+mod memory;
+
+pub mod op;
+
+pub mod timing;
 
 use std::sync::Arc;
 
-use rsemu::core::error::BusError;
-use rsemu::core::space::{
-    AccessConstraints, AddressSpace, Mapping, MappingId, MemAttrs, MemOps, RamStore, Region,
-    RomStore, RomWrite,
-};
-use rsemu::core::value::{Endian, Width};
-use rsemu::cpu::arm::v7m::{ArmV7m, Config};
+use rsemu::core::space::{AddressSpace, MemAttrs};
+use rsemu::core::value::Width;
+use rsemu::cpu::arm::v7m::sys::{Exception, Sys};
+use rsemu::cpu::arm::v7m::{ArmV7m, Config, Regs};
+
+use memory::Map;
+pub use memory::{PeripheralBus, Ram};
+
+use crate::witness::Trap;
+use op::{Access, Class, Op};
+use timing::{Cycles, Timing};
 
 /// Where the 64 KiB of SRAM begin; they end at 0x2000_8000 (K20 manual, "Memory map").
 pub const RAM_BASE: u32 = 0x1FFF_8000;
@@ -18,90 +33,62 @@ pub const RAM_BASE: u32 = 0x1FFF_8000;
 /// Bytes of SRAM.
 pub const RAM_SIZE: u32 = 64 * 1024;
 
+/// Where SRAM_L ends and SRAM_U begins.
+const RAM_MIDDLE: u32 = 0x2000_0000;
+
 /// Bytes of program flash, from address 0.
 pub const FLASH_SIZE: u32 = 256 * 1024;
-
-const PERIPHERALS_BASE: u32 = 0x4000_0000;
-const PERIPHERALS_SIZE: u32 = 0x0010_0000;
-/// FlexNVM and FlexRAM, which the flash module answers for.
-const FLEX_REGIONS: [(&str, u32, u64); 2] = [
-    ("flexnvm", 0x1000_0000, 32 * 1024),
-    ("flexram", 0x1400_0000, 2 * 1024),
-];
 
 /// xPSR: ITSTATE, in its two places, and the number of the exception being handled.
 const IT_STATE: u32 = 0x0600_FC00;
 const EXCEPTION: u32 = 0x1FF;
 
-/// What answers the processor's accesses to the peripheral bridges and to the flash module's memories.
-pub trait PeripheralBus: Send + Sync + std::fmt::Debug {
-    /// Reads `width` bytes; `None` is a bus error.
-    fn read(&self, address: u32, width: u8) -> Option<u32>;
-    /// Writes `width` bytes; `false` is a bus error.
-    fn write(&self, address: u32, width: u8, value: u32) -> bool;
+/// The program counter of a processor that has locked up (ARMv7-M, B1.5.15).
+const LOCKED_UP: u32 = 0xFFFF_FFFE;
+
+/// By which end of the band of cycle counts time passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Pace {
+    /// No wait states, every range at its least.
+    #[default]
+    Least,
+    /// The flash's wait states, every range at its greatest.
+    Greatest,
 }
 
-/// The chip's SRAM, which outlives every reset and which USB reads and writes on its own.
-#[derive(Debug, Clone)]
-pub struct Ram(Arc<RamStore>);
-
-impl Ram {
-    /// SRAM as it is after power-on: not zero, so that firmware which relies on zeroed memory is found out.
-    pub fn new() -> Ram {
-        let store = RamStore::new(u64::from(RAM_SIZE));
-        // The pattern differs from byte to byte; any fixed one will do.
-        for offset in 0..u64::from(RAM_SIZE) {
-            let _ = store.write_u8(offset, (offset as u8).wrapping_mul(167) ^ 0xA5);
+impl Pace {
+    /// The end of the band that this pace goes by.
+    pub fn of(self, cycles: Cycles) -> u64 {
+        match self {
+            Pace::Least => cycles.least,
+            Pace::Greatest => cycles.greatest,
         }
-        Ram(Arc::new(store))
-    }
-
-    /// Reads the 32-bit word at `address`; `None` outside the SRAM.
-    pub fn word(&self, address: u32) -> Option<u32> {
-        let offset = u64::from(address.checked_sub(RAM_BASE)?);
-        self.0
-            .read_value(offset, Width::U32, Endian::Little)
-            .ok()
-            .map(|v| v as u32)
-    }
-
-    /// Writes the 32-bit word at `address`; `false` outside the SRAM.
-    pub fn set_word(&self, address: u32, value: u32) -> bool {
-        address.checked_sub(RAM_BASE).is_some_and(|offset| {
-            self.0
-                .write_value(
-                    u64::from(offset),
-                    Width::U32,
-                    u64::from(value),
-                    Endian::Little,
-                )
-                .is_ok()
-        })
-    }
-
-    /// Reads bytes from `address` on; `None` if any lies outside the SRAM. No bytes may be anywhere.
-    pub fn bytes(&self, address: u32, length: usize) -> Option<Vec<u8>> {
-        let mut bytes = vec![0; length];
-        if length > 0 {
-            let offset = u64::from(address.checked_sub(RAM_BASE)?);
-            self.0.read_at(offset, &mut bytes).ok()?;
-        }
-        Some(bytes)
-    }
-
-    /// Writes bytes from `address` on; `false` if any would lie outside the SRAM.
-    pub fn set_bytes(&self, address: u32, bytes: &[u8]) -> bool {
-        bytes.is_empty()
-            || address
-                .checked_sub(RAM_BASE)
-                .is_some_and(|offset| self.0.write_at(u64::from(offset), bytes).is_ok())
     }
 }
 
-impl Default for Ram {
-    fn default() -> Ram {
-        Ram::new()
-    }
+/// A fault that the processor took, by its name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// The rule that was broken.
+    pub trap: Trap,
+    /// How, in words.
+    pub what: String,
+}
+
+/// What one step did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Step {
+    /// How long it took.
+    pub cycles: Cycles,
+    /// The access to memory that the instruction made.
+    pub access: Option<Access>,
+}
+
+/// What DWT_CYCCNT and SysTick have yet to count, or have counted too much: the engine has its own idea of cycles.
+#[derive(Debug, Clone, Copy, Default)]
+struct Owed {
+    cycle_counter: i64,
+    systick: i64,
 }
 
 /// The processor with its memories.
@@ -109,57 +96,50 @@ impl Default for Ram {
 pub struct Cpu {
     core: ArmV7m,
     space: Arc<AddressSpace>,
-    flash: MappingId,
-    peripherals: Arc<dyn PeripheralBus>,
+    map: Map,
+    /// The registers after the last step, and before it.
+    registers: Regs,
+    before: Regs,
+    /// Instructions of the flash by halfword, decoded when first met.
+    code: Vec<Op>,
+    timing: Timing,
+    pace: Pace,
+    owed: Owed,
+    /// SysTick or DWT_CYCCNT counts.
+    counting: bool,
+    asleep: bool,
+    /// Fault status bits that earlier faults have left.
+    faults_seen: u32,
+    /// What the last step has broken.
+    fault: Option<Fault>,
 }
 
 impl Cpu {
     /// A processor about to leave reset, with `flash` at address 0.
-    pub fn new(flash: &[u8], ram: &Ram, peripherals: Arc<dyn PeripheralBus>) -> Cpu {
-        let space = AddressSpace::new("K20", 32);
-        let bridge = |name: &str, base: u32, size: u64| {
-            let bridge = Bridge(Arc::clone(&peripherals), base);
-            Region::io(name, size, Arc::new(bridge))
-        };
-        let flash = {
-            let mut map = space.topology();
-            let mut place = |region: Region, base: u32| {
-                map.map(region, u64::from(base))
-                    .expect("the chip's regions do not overlap")
-            };
-            place(Region::ram("sram", Arc::clone(&ram.0)), RAM_BASE);
-            place(
-                bridge("peripherals", PERIPHERALS_BASE, u64::from(PERIPHERALS_SIZE)),
-                PERIPHERALS_BASE,
-            );
-            for (name, base, size) in FLEX_REGIONS {
-                place(bridge(name, base, size), base);
-            }
-            place(readable(flash), 0)
-        };
-        let space = Arc::new(space);
+    pub fn new(flash: &[u8], ram: &Ram, peripherals: Arc<dyn PeripheralBus>, pace: Pace) -> Cpu {
+        let (space, map) = Map::new(flash, ram, peripherals);
         Cpu {
             core: Cpu::core(&space),
             space,
-            flash,
-            peripherals,
+            map,
+            registers: Regs::new(),
+            before: Regs::new(),
+            code: vec![Op::UNMET; FLASH_SIZE as usize / 2],
+            timing: Timing::default(),
+            pace,
+            owed: Owed::default(),
+            counting: false,
+            asleep: false,
+            faults_seen: 0,
+            fault: None,
         }
     }
 
     /// Shows the processor new contents of its flash, or hides them while a command works on the flash: every access
     /// then goes to the flash module.
-    pub fn show_flash(&self, contents: Option<&[u8]>) {
-        let region = match contents {
-            Some(contents) => readable(contents),
-            None => {
-                let bridge = Bridge(Arc::clone(&self.peripherals), 0);
-                Region::io("flash at work", u64::from(FLASH_SIZE), Arc::new(bridge))
-            }
-        };
-        self.space
-            .topology()
-            .replace(self.flash, Mapping::new(region, 0))
-            .expect("the region is as large as the one before");
+    pub fn show_flash(&mut self, contents: Option<&[u8]>) {
+        self.map.show_flash(&self.space, contents);
+        self.code.fill(Op::UNMET);
     }
 
     fn core(space: &Arc<AddressSpace>) -> ArmV7m {
@@ -174,55 +154,183 @@ impl Cpu {
     /// A system reset: everything in the core returns to its reset state; memories keep their contents.
     pub fn reset(&mut self) {
         self.core = Cpu::core(&self.space);
+        self.registers = Regs::new();
+        self.timing = Timing::default();
+        self.owed = Owed::default();
+        self.counting = false;
+        self.asleep = false;
+        self.faults_seen = 0;
     }
 
-    /// Executes one instruction, exception entry or idle cycle; returns the processor cycles it took.
-    pub fn step(&self) -> u64 {
-        let before = self.core.xpsr();
-        if before & IT_STATE == 0 {
-            return self.core.step();
+    /// Executes one instruction, exception entry or idle cycle. `ratio` is the core clock over the flash clock.
+    pub fn step(&mut self, ratio: u32) -> Step {
+        self.before = self.registers;
+        let (pc, xpsr) = (self.before.r[15], self.before.xpsr);
+        let op = self.op_at(pc);
+        let access = op
+            .access(pc, &self.before.r)
+            .filter(|_| condition_holds(xpsr));
+        let private = access.filter(|access| access.address >> 28 == 0xE);
+        if private.is_some() {
+            self.settle();
         }
-        let stack = self.core.reg(13);
-        let cycles = self.core.step();
-        self.keep_it_state(before, stack);
-        cycles
+        let charged = self.core.step();
+        self.registers = self.core.regs();
+        if self.asleep {
+            self.asleep = self.core.is_asleep();
+            if self.asleep {
+                // DWT_CYCCNT's clock is gated in WFI; the engine counts on.
+                self.owed.cycle_counter -= charged as i64;
+            }
+            return Step {
+                cycles: Cycles::exactly(charged),
+                access: None,
+            };
+        }
+        if xpsr & IT_STATE != 0 {
+            self.keep_it_state();
+        }
+        if private.is_some_and(|access| access.store) {
+            self.counting = self
+                .core
+                .with_sys(|sys| sys.syst_csr & 1 != 0 || sys.cyccnt_enabled());
+        }
+        let next = self.registers.r[15];
+        let changed = (self.registers.xpsr ^ xpsr) & EXCEPTION != 0 || next == LOCKED_UP;
+        let cycles = if changed {
+            self.fault = self.processor_fault(&op, access);
+            // Entry, return and tail-chaining have their own cost (DDI 0439, 3.9).
+            Cycles::exactly(charged)
+        } else {
+            let branched = next != pc.wrapping_add(u32::from(op.length));
+            self.timing.of(&op, pc, access, branched, ratio)
+        };
+        if self.counting {
+            self.owe(self.pace.of(cycles) as i64 - charged as i64);
+        }
+        if op.class == Class::Sleep {
+            self.asleep = self.core.is_asleep();
+        }
+        if let Some(access) = access
+            && access.address.wrapping_add(u32::from(access.bytes)) > RAM_MIDDLE
+            && (RAM_BASE..RAM_MIDDLE).contains(&access.address)
+        {
+            self.fault = Some(Fault {
+                trap: Trap::SramBoundary,
+                what: format!(
+                    "an access of {} bytes at {:#010x}",
+                    access.bytes, access.address
+                ),
+            });
+        }
+        Step { cycles, access }
+    }
+
+    /// Takes the rule of the processor that the last step has broken.
+    pub fn take_fault(&mut self) -> Option<Fault> {
+        self.fault.take()
+    }
+
+    fn op_at(&mut self, pc: u32) -> Op {
+        let Some(&op) = self.code.get(pc as usize / 2) else {
+            return self.decode(pc);
+        };
+        if op.length != 0 {
+            return op;
+        }
+        let op = self.decode(pc);
+        self.code[pc as usize / 2] = op;
+        op
+    }
+
+    fn decode(&self, pc: u32) -> Op {
+        let halfword = |address| self.halfword(address).unwrap_or(0);
+        Op::decode(halfword(pc), halfword(pc.wrapping_add(2)))
+    }
+
+    /// Which rule was broken, if the processor has just taken a fault.
+    fn processor_fault(&mut self, op: &Op, access: Option<Access>) -> Option<Fault> {
+        const FAULTS: std::ops::RangeInclusive<u32> = 3..=6;
+        let (before, after) = (&self.before, &self.registers);
+        let (old, new) = (before.xpsr & EXCEPTION, after.xpsr & EXCEPTION);
+        if after.r[15] == LOCKED_UP {
+            return (before.r[15] != LOCKED_UP).then(|| Fault {
+                trap: Trap::Lockup,
+                what: format!("a fault in exception {old}, which no handler can take"),
+            });
+        }
+        // A return from one handler to another pops its frame.
+        let returned = old != 0 && after.r[13] > before.r[13];
+        if !FAULTS.contains(&new) || returned {
+            return None;
+        }
+        let (cfsr, hfsr, bfar) = self.core.with_sys(|sys| (sys.cfsr, sys.hfsr, sys.bfar));
+        let fresh = cfsr & !self.faults_seen;
+        self.faults_seen = cfsr;
+        let status = (if fresh == 0 { cfsr } else { fresh }, hfsr, bfar);
+        Some(fault::name(self.before.r[15], op.floating, access, status))
     }
 
     /// Puts the rest of an IT block into the frame of an exception that interrupted it.
     ///
     /// The architecture stacks ITSTATE with the xPSR (DDI 0403, B1.5.6); rsemu 0.0.7 leaves it out, so
     /// that after the return the rest of the block would be executed whatever its condition.
-    fn keep_it_state(&self, before: u32, stack: u32) {
+    fn keep_it_state(&self) {
+        let before = &self.before;
         const SVCALL: u32 = 11;
-        let exception = u32::from(self.core.current_exception().0);
+        let exception = self.registers.xpsr & EXCEPTION;
         // An entry pushes a frame; a return inside an IT block pops one. A supervisor call has
         // advanced the state, and stands last in its block by the architecture's advice.
-        if exception == before & EXCEPTION || exception == SVCALL || self.core.reg(13) > stack {
+        if exception == before.xpsr & EXCEPTION
+            || exception == SVCALL
+            || self.registers.r[13] > before.r[13]
+        {
             return;
         }
-        let on_process_stack = self.core.reg(14) & 4 != 0;
+        let on_process_stack = self.registers.r[14] & 4 != 0;
         let frame = if on_process_stack {
-            self.core.psp()
+            self.registers.psp
         } else {
-            self.core.msp()
+            self.registers.msp
         };
         let stacked = u64::from(frame.wrapping_add(28));
         let attributes = MemAttrs::DEFAULT;
         if let Ok(xpsr) = self.space.read(stacked, Width::U32, attributes) {
-            let restored = xpsr | u64::from(before & IT_STATE);
+            let restored = xpsr | u64::from(before.xpsr & IT_STATE);
             // A stack outside memory has already become a fault of its own.
             let _ = self.space.write(stacked, Width::U32, restored, attributes);
         }
     }
 
+    fn owe(&mut self, cycles: i64) {
+        /// How far the counters may be off between two looks at them.
+        const TOLERANCE: i64 = 16;
+        self.owed.cycle_counter += cycles;
+        self.owed.systick += cycles;
+        if self.owed.systick.abs() >= TOLERANCE {
+            self.settle();
+        }
+    }
+
+    /// Lets DWT_CYCCNT and SysTick count what they are owed.
+    fn settle(&mut self) {
+        if self.counting {
+            let mut owed = self.owed;
+            self.core.with_sys(|sys| settle(sys, &mut owed));
+            self.owed = owed;
+        } else {
+            self.owed = Owed::default();
+        }
+    }
+
     /// Whether the core sleeps in WFI or WFE.
     pub fn is_asleep(&self) -> bool {
-        self.core.is_asleep()
+        self.asleep
     }
 
     /// Whether a fault within a fault has stopped the core for good.
     pub fn is_locked_up(&self) -> bool {
-        self.core.is_locked_up()
+        self.registers.r[15] == LOCKED_UP
     }
 
     /// Whether the program asked for a system reset (AIRCR.SYSRESETREQ).
@@ -232,7 +340,7 @@ impl Cpu {
 
     /// Enables interrupt `irq` as a write to the NVIC would.
     pub fn enable_irq(&self, irq: u16) {
-        let exception = rsemu::cpu::arm::v7m::sys::Exception(irq + 16);
+        let exception = Exception(irq + 16);
         self.core.with_sys(|sys| sys.set_enable(exception, true));
     }
 
@@ -242,7 +350,8 @@ impl Cpu {
     }
 
     /// Cycles until SysTick would pend its exception; `None` if it never will.
-    pub fn cycles_to_systick(&self) -> Option<u64> {
+    pub fn cycles_to_systick(&mut self) -> Option<u64> {
+        self.settle();
         self.core.with_sys(|sys| {
             let (enabled, interrupt) = (sys.syst_csr & 1 != 0, sys.syst_csr & 2 != 0);
             (enabled && interrupt && sys.syst_rvr != 0).then(|| match sys.syst_cvr {
@@ -254,38 +363,46 @@ impl Cpu {
 
     /// Lets `cycles` pass in sleep: SysTick counts on, DWT_CYCCNT does not (its clock is gated by WFI).
     pub fn sleep(&self, cycles: u64) {
-        const SYSTICK: rsemu::cpu::arm::v7m::sys::Exception =
-            rsemu::cpu::arm::v7m::sys::Exception::SYSTICK;
+        self.core.with_sys(|sys| count_systick(sys, cycles));
+    }
+
+    /// Lets `cycles` pass awake: both counters count.
+    pub fn idle(&self, cycles: u64) {
         self.core.with_sys(|sys| {
-            if sys.tick_systick(cycles) && sys.syst_csr & 2 != 0 {
-                sys.set_pending(SYSTICK, true);
-            }
+            sys.tick_cyccnt(cycles);
+            count_systick(sys, cycles);
         });
     }
 
     /// The program counter.
     pub fn pc(&self) -> u32 {
-        self.core.pc()
+        self.registers.r[15]
     }
 
-    /// Continues at `address`: how a test makes the program hang or panic where it likes.
-    pub fn set_pc(&self, address: u32) {
+    /// Continues at `address`, awake: how a test makes the program hang or panic where it likes.
+    pub fn set_pc(&mut self, address: u32) {
         self.core.set_pc(address);
+        self.registers = self.core.regs();
     }
 
-    /// Register `number`, 0 to 15.
-    pub fn register(&self, number: u8) -> u32 {
-        self.core.reg(number)
+    /// The sixteen registers and xPSR.
+    pub fn registers(&self) -> (&op::Registers, u32) {
+        (&self.registers.r, self.registers.xpsr)
+    }
+
+    /// The same before the last step.
+    pub fn registers_before(&self) -> (&op::Registers, u32) {
+        (&self.before.r, self.before.xpsr)
     }
 
     /// The main stack pointer.
     pub fn stack_pointer(&self) -> u32 {
-        self.core.msp()
+        self.registers.msp
     }
 
     /// Number of the exception being handled; 0 in thread mode, 3 in HardFault, 16 + n in interrupt n.
     pub fn exception(&self) -> u16 {
-        self.core.current_exception().0
+        (self.registers.xpsr & EXCEPTION) as u16
     }
 
     /// Reads a 16-bit halfword as a debugger would, without side effects.
@@ -297,54 +414,49 @@ impl Cpu {
     }
 }
 
-/// Flash that can be read and executed, but not stored to.
-fn readable(contents: &[u8]) -> Region {
-    Region::rom(
-        "flash",
-        Arc::new(RomStore::from_slice(contents)),
-        RomWrite::Fault,
-    )
+fn count_systick(sys: &mut Sys, cycles: u64) {
+    if sys.tick_systick(cycles) && sys.syst_csr & 2 != 0 {
+        sys.set_pending(Exception::SYSTICK, true);
+    }
 }
 
-/// Adapts [`PeripheralBus`] to the engine's idea of a memory-mapped device at an address.
-#[derive(Debug)]
-struct Bridge(Arc<dyn PeripheralBus>, u32);
-
-impl MemOps for Bridge {
-    fn read(&self, offset: u64, dst: &mut [u8], attrs: MemAttrs) -> Result<(), BusError> {
-        if attrs.debug {
-            dst.fill(0);
-            return Ok(());
-        }
-        let value = self
-            .0
-            .read(self.1 + offset as u32, dst.len() as u8)
-            .ok_or(BusError::BadAccess)?;
-        dst.copy_from_slice(&value.to_le_bytes()[..dst.len()]);
-        Ok(())
+/// Makes the counters right. SysTick is not turned back over its reload, lest it expire twice: what is left waits.
+fn settle(sys: &mut Sys, owed: &mut Owed) {
+    let counter = std::mem::take(&mut owed.cycle_counter);
+    if sys.cyccnt_enabled() {
+        sys.dwt_cyccnt = sys.dwt_cyccnt.wrapping_add(counter as u32);
     }
-
-    fn write(&self, offset: u64, src: &[u8], attrs: MemAttrs) -> Result<(), BusError> {
-        if attrs.debug {
-            return Ok(());
-        }
-        let mut bytes = [0; 4];
-        bytes[..src.len()].copy_from_slice(src);
-        let accepted = self.0.write(
-            self.1 + offset as u32,
-            src.len() as u8,
-            u32::from_le_bytes(bytes),
-        );
-        if accepted {
-            Ok(())
-        } else {
-            Err(BusError::BadAccess)
-        }
+    if sys.syst_csr & 1 == 0 || sys.syst_rvr == 0 {
+        owed.systick = 0;
+    } else if owed.systick > 0 {
+        count_systick(sys, std::mem::take(&mut owed.systick) as u64);
+    } else {
+        let room = i64::from(sys.syst_rvr.saturating_sub(sys.syst_cvr));
+        let back = room.min(-owed.systick);
+        sys.syst_cvr += back as u32;
+        owed.systick += back;
     }
+}
 
-    fn constraints(&self) -> AccessConstraints {
-        AccessConstraints::IO
-            .with_widths(Width::U8, Width::U32)
-            .with_natural_alignment(self.1 == PERIPHERALS_BASE)
+/// Whether the instruction under this xPSR is executed: outside an IT block, or with its condition fulfilled
+/// (ARMv7-M, A7.3).
+fn condition_holds(xpsr: u32) -> bool {
+    if xpsr & IT_STATE == 0 {
+        return true;
     }
+    let flag = |bit: u32| xpsr >> bit & 1 != 0;
+    let (n, z, c, v) = (flag(31), flag(30), flag(29), flag(28));
+    // The condition is the upper half of ITSTATE, whose bits 7 to 2 are xPSR bits 15 to 10.
+    let condition = xpsr >> 12 & 0xF;
+    let holds = match condition >> 1 {
+        0 => z,
+        1 => c,
+        2 => n,
+        3 => v,
+        4 => c && !z,
+        5 => n == v,
+        6 => n == v && !z,
+        _ => return true,
+    };
+    holds != (condition & 1 != 0)
 }

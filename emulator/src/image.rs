@@ -56,6 +56,7 @@ pub struct Image {
     pub symbols: Symbols,
     used: usize,
     ram: Option<usize>,
+    data_end: u32,
 }
 
 impl Image {
@@ -77,11 +78,16 @@ impl Image {
     /// [`ImageError`] if the bytes are neither, are damaged, are a program for something else than
     /// this chip, do not fit it, would not start, or would lock it.
     pub fn parse(bytes: &[u8]) -> Result<Self, ImageError> {
-        let (flash, symbols, ram) = if bytes.starts_with(b"\x7FELF") {
+        let (flash, symbols, ram, data_end) = if bytes.starts_with(b"\x7FELF") {
             let program = elf::read(bytes)?;
-            (program.flash, program.symbols, Some(program.ram_used))
+            (
+                program.flash,
+                program.symbols,
+                Some(program.ram_used),
+                program.data_end,
+            )
         } else if let Some(text) = hex::text(bytes) {
-            (hex::read(text)?, Symbols::default(), None)
+            (hex::read(text)?, Symbols::default(), None, RAM.start)
         } else {
             return Err(ImageError::NotAnImage {
                 content: error::guess(bytes),
@@ -100,6 +106,7 @@ impl Image {
             symbols,
             used,
             ram,
+            data_end,
         })
     }
 
@@ -130,6 +137,16 @@ impl Image {
     /// stack. `None` if the file does not say, as Intel HEX does not.
     pub fn ram_used(&self) -> Option<usize> {
         self.ram
+    }
+
+    /// Where the program's variables end in RAM: a stack that grows below this overwrites them. The beginning of the
+    /// RAM if the file does not say, or if a section lies above the stack.
+    pub fn data_end(&self) -> u32 {
+        if self.data_end < self.stack {
+            self.data_end
+        } else {
+            RAM.start
+        }
     }
 
     /// The image as Intel HEX, for a loader.

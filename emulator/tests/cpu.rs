@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use vrduino_emulator::cpu::{Cpu, FLASH_SIZE, PeripheralBus, Ram};
+use vrduino_emulator::cpu::{Cpu, FLASH_SIZE, Pace, PeripheralBus, Ram};
 
 #[derive(Debug)]
 struct Nothing;
@@ -34,7 +34,7 @@ fn processor(code: &[u16]) -> Cpu {
         let at = CODE as usize + 2 * index;
         flash[at..at + 2].copy_from_slice(&halfword.to_le_bytes());
     }
-    Cpu::new(&flash, &Ram::new(), Arc::new(Nothing))
+    Cpu::new(&flash, &Ram::new(), Arc::new(Nothing), Pace::Least)
 }
 
 /// ITSTATE travels with the exception frame (DDI 0403, B1.5.6), wherever in the block the interrupt
@@ -55,9 +55,13 @@ fn an_interrupt_in_an_it_block_leaves_the_rest_of_the_block_conditional() {
         cpu.enable_irq(IRQ);
         for step in 0..30 {
             cpu.set_irq(IRQ, step == steps_before);
-            cpu.step();
+            cpu.step(1);
         }
-        assert_eq!(cpu.register(0), 0, "interrupted at step {steps_before}");
+        assert_eq!(
+            cpu.registers().0[0],
+            0,
+            "interrupted at step {steps_before}"
+        );
         assert_eq!(cpu.exception(), 0);
         assert_eq!(cpu.stack_pointer(), 0x2000_8000);
     }

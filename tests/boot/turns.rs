@@ -129,9 +129,9 @@ fn the_sensors_own_clock_may_be_one_percent_off() {
 fn the_core_sleeps_most_of_the_time() {
     let mut run = Run::still();
     run.seconds(2.0);
-    let before = run.board.awake_for();
+    let before = run.board.measure().awake.greatest;
     run.board.run(SECOND);
-    let load = (run.board.awake_for() - before) as f64 / SECOND as f64;
+    let load = (run.board.measure().awake.greatest - before) as f64 / SECOND as f64;
     assert!(
         load < 0.5,
         "the core is busy {:.1} % of the time",

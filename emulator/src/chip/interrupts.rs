@@ -25,6 +25,12 @@ mod irq {
     pub const PORT: u32 = 87;
 }
 
+/// Every request the modelled peripherals can raise.
+pub const INTERRUPTS: [u16; 48] = [
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 19, 24, 25, 26, 45, 46, 47, 48,
+    49, 50, 57, 58, 62, 63, 64, 66, 67, 68, 69, 70, 71, 72, 73, 83, 85, 87, 88, 89, 90, 91,
+];
+
 impl Chip {
     /// The requests that are asserted, one bit each.
     pub fn interrupts(&self) -> u128 {

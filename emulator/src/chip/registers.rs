@@ -22,6 +22,27 @@ impl Chip {
         }
     }
 
+    /// Whether reading `address` changes nothing, and finds the same until the next event or access.
+    pub fn is_steady(&self, address: u32) -> bool {
+        const I2C0_C1: u32 = 0x4006_6002;
+        const I2C0_S: u32 = 0x4006_6003;
+        const MCG_S: u32 = 0x4006_4006;
+        const FTFL_FSTAT: u32 = 0x4002_0000;
+        const FTFL_FCNFG: u32 = 0x4002_0001;
+        const USB_ISTAT: u32 = 0x4007_2080;
+        const UART0_S1: u32 = 0x4006_A004;
+        const SPI0_SR: u32 = 0x4002_C02C;
+        const ADC0_SC1A: u32 = 0x4003_B000;
+        const SIM: u32 = 0x4004_7000;
+        const GPIO: u32 = 0x400F_F000;
+        match address {
+            I2C0_C1 | I2C0_S | MCG_S | FTFL_FSTAT | FTFL_FCNFG | USB_ISTAT | UART0_S1 | SPI0_SR
+            | ADC0_SC1A => true,
+            _ if address & !0xFFF == GPIO => !self.timers.reach_pins(&self.pins),
+            _ => matches!(address & !0xFFF, SIM | 0x4004_8000),
+        }
+    }
+
     /// Reads memory that belongs to the flash module; `None` where the address is not its.
     pub(super) fn read_flash_module(&mut self, address: u32, width: u8) -> Option<Option<u32>> {
         match address {

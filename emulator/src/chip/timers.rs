@@ -82,6 +82,12 @@ impl Timers {
         self.rtc.advance(clocks.now);
     }
 
+    /// Whether a pin follows a timer.
+    pub(super) fn reach_pins(&self, pins: &Pins) -> bool {
+        PINS.iter()
+            .any(|&(_, _, port, bit, mux)| pins.function(port, bit) == mux)
+    }
+
     /// Puts the outputs of FlexTimers on the pins that are theirs.
     pub(super) fn show(&self, pins: &mut Pins, now: Ticks) {
         for (timer, channel, port, bit, mux) in PINS {

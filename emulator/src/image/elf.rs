@@ -26,6 +26,7 @@ pub(super) struct Program {
     pub(super) flash: Flash,
     pub(super) symbols: Symbols,
     pub(super) ram_used: usize,
+    pub(super) data_end: u32,
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Program, ImageError> {
@@ -49,10 +50,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Program, ImageError> {
             flash.program(u64::from(segment.p_paddr(LittleEndian)), data)?;
         }
     }
+    let (ram_used, data_end) = ram_used(&file)?;
     Ok(Program {
         flash,
         symbols: symbols(&file),
-        ram_used: ram_used(&file)?,
+        ram_used,
+        data_end,
     })
 }
 
@@ -139,9 +142,10 @@ fn symbols(file: &ElfFile<'_, FileHeader32<LittleEndian>>) -> Symbols {
     Symbols::new(named.collect())
 }
 
-/// The bytes of RAM that sections take.
-fn ram_used(file: &ElfFile<'_, FileHeader32<LittleEndian>>) -> Result<usize, ImageError> {
+/// The bytes of RAM that sections take, and where the last of them ends.
+fn ram_used(file: &ElfFile<'_, FileHeader32<LittleEndian>>) -> Result<(usize, u32), ImageError> {
     let mut used = 0_u64;
+    let mut end = u64::from(RAM.start);
     for section in file.sections() {
         let header = section.elf_section_header();
         let begin = section.address();
@@ -158,7 +162,9 @@ fn ram_used(file: &ElfFile<'_, FileHeader32<LittleEndian>>) -> Result<usize, Ima
                 });
             }
             used += section.size();
+            end = end.max(begin + section.size());
         }
     }
-    Ok(usize::try_from(used).unwrap_or(usize::MAX))
+    let end = u32::try_from(end).unwrap_or(RAM.end);
+    Ok((usize::try_from(used).unwrap_or(usize::MAX), end))
 }

@@ -46,6 +46,14 @@ pub struct Arguments {
     #[arg(long, value_name = "FAULT[@S[-T]]", help = FAULT_HELP)]
     pub fault: Vec<Fault>,
 
+    /// Let time pass by the pessimistic end of the band of cycle counts: with the flash's wait states
+    #[arg(long)]
+    pub pessimistic: bool,
+
+    /// Time the calls of this function, by the end of its path, e.g. Tracker::update
+    #[arg(long, value_name = "FUNCTION")]
+    pub time: Option<String>,
+
     /// Go on as silicon would after stepping into this trap, instead of stopping with exit code 3; `all` allows
     /// every one; may be given more than once
     #[arg(long, value_name = "TRAP", value_parser = allowed)]

@@ -14,6 +14,7 @@ use std::time::{Duration, Instant};
 
 use clap::Parser;
 use vrduino_emulator::board::{Board, Setup};
+use vrduino_emulator::cpu::Pace;
 use vrduino_emulator::firmware;
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::{self, Motion};
@@ -65,6 +66,13 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
         who_am_i: arguments.who_am_i,
         sensor_clock_error: arguments.sensor_clock / 100.0,
         allowed: arguments.allowed(),
+        pace: if arguments.pessimistic {
+            Pace::Greatest
+        } else {
+            Pace::Least
+        },
+        skip_polling: true,
+        timed_function: arguments.time.clone().unwrap_or_default(),
     };
     let mut board = Board::new(image, setup);
     let terminal = PseudoTerminal::open()?;

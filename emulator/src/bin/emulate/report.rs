@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use vrduino_emulator::board::Board;
+use vrduino_emulator::chip::INTERRUPTS;
 use vrduino_emulator::time::{self, Ticks};
 
 /// Counts the stream's lines.
@@ -102,10 +103,38 @@ impl Report {
             None => eprintln!("dropped unknown: the image has no counter that the emulator knows"),
         }
         eprintln!("resets  {}", board.resets());
+        let measure = board.measure();
+        let busy = |awake: u64| 100.0 * awake as f64 / board.now().max(1) as f64;
         eprintln!(
-            "cpu     {:.1} % busy, {:.1} million instructions a second",
-            100.0 * board.awake_for() as f64 / board.now().max(1) as f64,
+            "cpu     {:.1} to {:.1} % busy, {:.1} million instructions a second",
+            busy(measure.awake.least),
+            busy(measure.awake.greatest),
             board.instructions() as f64 / emulated.max(1e-9) / 1e6
         );
+        let stack = board.image().stack.saturating_sub(measure.stack_low);
+        eprintln!("stack   {stack} bytes at its deepest");
+        for (number, latency) in INTERRUPTS.iter().zip(&measure.latencies) {
+            if latency.count > 0 {
+                eprintln!(
+                    "irq {:3} taken {} times, after {:.2} µs at worst",
+                    number,
+                    latency.count,
+                    time::seconds(latency.worst) * 1e6
+                );
+            }
+        }
+        let calls = &measure.calls;
+        if calls.count > 0 {
+            eprintln!(
+                "timed   {} calls: {} instructions on average, {} at most; {} to {} cycles on average, {} to {} at worst",
+                calls.count,
+                calls.instructions / calls.count,
+                calls.most_instructions,
+                calls.cycles.least / calls.count,
+                calls.cycles.greatest / calls.count,
+                calls.worst.least,
+                calls.worst.greatest
+            );
+        }
     }
 }

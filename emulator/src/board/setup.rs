@@ -1,0 +1,44 @@
+//! How the board is put together.
+
+use crate::cpu::Pace;
+use crate::motion::Motion;
+use crate::witness::Trap;
+
+/// What is on the board, and how strictly it is judged.
+pub struct Setup {
+    /// What the sensor experiences, from power-on.
+    pub motion: Box<dyn Motion>,
+    /// The sensor's identity: 0x71 is an MPU-9250.
+    pub who_am_i: u8,
+    /// Relative error of the sensor's oscillator (specification: within ±1 %).
+    pub sensor_clock_error: f64,
+    /// Traps that do not stop the run: the board goes on as silicon would.
+    pub allowed: Vec<Trap>,
+    /// By which end of the band of cycle counts time passes.
+    pub pace: Pace,
+    /// Whether polling loops in which nothing changes are passed over. No result depends on it, only the speed.
+    pub skip_polling: bool,
+    /// A function whose calls are timed, by the end of its path; empty for none.
+    pub timed_function: String,
+}
+
+impl Setup {
+    /// A board with a perfect MPU-9250 moved by `motion`; every trap stops it.
+    pub fn new(motion: Box<dyn Motion>) -> Setup {
+        Setup {
+            motion,
+            who_am_i: 0x71,
+            sensor_clock_error: 0.0,
+            allowed: Vec::new(),
+            pace: Pace::default(),
+            skip_polling: true,
+            timed_function: String::new(),
+        }
+    }
+
+    /// The same board, which goes on as silicon would after stepping into one of these traps.
+    pub fn allowing(mut self, traps: &[Trap]) -> Setup {
+        self.allowed.extend(traps);
+        self
+    }
+}
