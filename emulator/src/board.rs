@@ -59,6 +59,8 @@ pub struct Board {
     pace: Pace,
     allowed: Vec<Trap>,
     stop: Option<Stop>,
+    /// Since when the board is in its loader.
+    loader: Option<Ticks>,
     /// Address of the instruction that is being executed, or was last.
     pc: u32,
     measure: Measure,
@@ -108,6 +110,7 @@ impl Board {
             pace: setup.pace,
             allowed: setup.allowed,
             stop: None,
+            loader: None,
             pc: 0,
             measure: Measure::new(timed),
             storm: Storm::default(),
@@ -120,7 +123,12 @@ impl Board {
     /// ([`Board::stop`]) does not run any more.
     pub fn run(&mut self, span: Ticks) {
         let until = self.now.saturating_add(span);
-        while self.now < until && self.stop.is_none() {
+        if self.loader.is_some() {
+            self.now = until;
+            self.shared.set_now(until);
+            return;
+        }
+        while self.now < until && self.stop.is_none() && self.loader.is_none() {
             if self.now >= self.next_event || self.shared.is_touched() {
                 self.service();
             }
@@ -223,12 +231,37 @@ impl Board {
     /// A fault on the peripheral bridges has been told by who saw it there.
     fn take_fault(&mut self, fault: Fault) {
         let told = !self.shared.chip().witness.is_empty();
-        if !told {
+        if fault.trap == Trap::Breakpoint && self.calls_loader() {
+            self.enter_loader();
+        } else if !told {
             self.judge(vec![Offence {
                 trap: fault.trap,
                 what: fault.what,
             }]);
         }
+    }
+
+    /// Whether the breakpoint is one that PJRC's cores reboot with, by its immediate: BKPT #0 on Teensy 3, #251 since.
+    fn calls_loader(&self) -> bool {
+        matches!(self.cpu.halfword(self.pc), Some(0xBE00 | 0xBEFB))
+    }
+
+    /// A breakpoint halts the processor, because the board's loader chip is a debugger that never lets go of it. The
+    /// loader then takes the board over: whatever ran is gone, and the board leaves the USB as what it was.
+    fn enter_loader(&mut self) {
+        let place = self.place_of(self.pc);
+        let what =
+            format!("the board went into its loader, by BKPT at {place}: it waits for a new image");
+        self.events.push(Event { at: self.now, what });
+        self.loader = Some(self.now);
+        let mut chip = self.shared.chip();
+        chip.reset(Cause::Software);
+        chip.advance();
+    }
+
+    /// Since when the board is in its loader, if the program has sent it there. Nothing of the image runs any more.
+    pub fn in_loader(&self) -> Option<Ticks> {
+        self.loader
     }
 
     fn look_for_polling(&mut self, step: &Step, until: Ticks) {

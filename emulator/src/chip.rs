@@ -68,10 +68,10 @@ const SLOTS: &[Slot] = &[
     slot(0x2F, "I2S0", Some((6, 15)), 4),        slot(0x32, "CRC", Some((6, 18)), 0),
     slot(0x35, "USBDCD", Some((6, 21)), 4),      slot(0x36, "PDB", Some((6, 22)), 4),
     slot(0x37, "PIT", Some((6, 23)), 4),         slot(0x38, "FTM0", Some((6, 24)), 4),
-    slot(0x39, "FTM1", Some((6, 25)), 4),        slot(0x3B, "ADC0", Some((6, 27)), 4),
+    slot(0x39, "FTM1", Some((6, 25)), 4),        slot(0x3B, "ADC0", Some((6, 27)), 0),
     slot(0x3D, "RTC", Some((6, 29)), 4),         slot(0x3E, "RFVBAT", None, 4),
     slot(0x40, "LPTMR", Some((5, 0)), 4),        slot(0x41, "RFSYS", None, 0),
-    slot(0x45, "TSI", Some((5, 5)), 4),          slot(0x47, "SIM", None, 4),
+    slot(0x45, "TSI", Some((5, 5)), 0),          slot(0x47, "SIM", None, 4),
     slot(0x48, "SIM", None, 4),                  slot(0x49, "PORTA", Some((5, 9)), 4),
     slot(0x4A, "PORTB", Some((5, 10)), 4),       slot(0x4B, "PORTC", Some((5, 11)), 4),
     slot(0x4C, "PORTD", Some((5, 12)), 4),       slot(0x4D, "PORTE", Some((5, 13)), 4),
@@ -84,8 +84,8 @@ const SLOTS: &[Slot] = &[
     slot(0x74, "VREF", Some((4, 20)), 1),        slot(0x7C, "LLWU", None, 1),
     slot(0x7D, "PMC", None, 1),                  slot(0x7E, "SMC", None, 1),
     slot(0x7F, "RCM", None, 1),                  slot(0x80, "AIPS1", None, 4),
-    slot(0xB8, "FTM2", Some((3, 24)), 4),        slot(0xBB, "ADC1", Some((3, 27)), 4),
-    slot(0xCC, "DAC0", Some((2, 12)), 0),        slot(0xFF, "GPIO", None, 4),
+    slot(0xB8, "FTM2", Some((3, 24)), 4),        slot(0xBB, "ADC1", Some((3, 27)), 0),
+    slot(0xCC, "DAC0", Some((2, 12)), 0),        slot(0xFF, "GPIO", None, 0),
 ];
 
 /// Every peripheral, the sensor, and the host.
@@ -359,7 +359,8 @@ impl Chip {
             0x7F => self.reset_control.read(offset),
             0xFF => {
                 self.timers.show(&mut self.pins, now);
-                self.pins.read_gpio(offset)
+                let word = self.pins.read_gpio(offset & !3);
+                narrow(word, offset, width)
             }
             _ => self.read_module(address, width),
         })
@@ -392,14 +393,34 @@ impl Chip {
             0x64 => self.clocks.write(offset, byte, now),
             0x66 => self.i2c.write(offset, byte, now, bus_hz, &self.pins),
             0x72 => self.usb.write(offset, byte),
-            0xFF => self.pins.write_gpio(offset, value),
+            0xFF => self.write_gpio(offset, width, value),
             _ => self.write_module(address, width, value),
         }
         true
+    }
+
+    /// GPIO takes narrow accesses: the other bits of PDOR and PDDR stay, those of the other registers are 0.
+    fn write_gpio(&mut self, offset: u32, width: u8, value: u32) {
+        const PDOR: u32 = 0x00;
+        const PDDR: u32 = 0x14;
+        let shift = 8 * (offset & 3);
+        let mask = narrow(u32::MAX, 0, width) << shift;
+        let others = match offset & 0x3C {
+            PDOR | PDDR => self.pins.read_gpio(offset & !3) & !mask,
+            _ => 0,
+        };
+        let word = others | value << shift & mask;
+        self.pins.write_gpio(offset & !3, word);
     }
 
     /// The moment, in seconds since power-on.
     pub fn seconds(&self) -> f64 {
         time::seconds(self.now)
     }
+}
+
+/// The bytes of a register's word that an access of `width` at `offset` sees.
+fn narrow(word: u32, offset: u32, width: u8) -> u32 {
+    let unused = 32 - 8 * u32::from(width.clamp(1, 4));
+    word >> (8 * (offset & 3)) & u32::MAX >> unused
 }

@@ -431,7 +431,11 @@ fn settle(sys: &mut Sys, owed: &mut Owed) {
     } else if owed.systick > 0 {
         count_systick(sys, std::mem::take(&mut owed.systick) as u64);
     } else {
-        let room = i64::from(sys.syst_rvr.saturating_sub(sys.syst_cvr));
+        // At 0 it has just expired, and would do so again.
+        let room = match sys.syst_cvr {
+            0 => 0,
+            count => i64::from(sys.syst_rvr.saturating_sub(count)),
+        };
         let back = room.min(-owed.systick);
         sys.syst_cvr += back as u32;
         owed.systick += back;
