@@ -5,10 +5,12 @@ use std::path::Path;
 use vrduino_emulator::board::{Board, Setup};
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::turns::Turns;
-use vrduino_emulator::time::{self, MILLISECOND};
+use vrduino_emulator::time::{self, MILLISECOND, SECOND};
+use vrduino_emulator::witness::{Stop, Trap};
 
 /// A board that runs a sketch.
 pub struct Bench {
+    image: Image,
     pub board: Board,
     pub text: String,
 }
@@ -16,11 +18,35 @@ pub struct Bench {
 impl Bench {
     pub fn new(elf: &Path) -> Bench {
         let image = Image::open(elf).expect("the emulator accepts the sketch");
-        let still = Setup::new(Box::new(Turns::new(1e6, 0.0)));
+        Bench::with(image, &[])
+    }
+
+    fn with(image: Image, allowed: &[Trap]) -> Bench {
+        let still = Setup::new(Box::new(Turns::new(1e6, 0.0))).allowing(allowed);
         Bench {
+            image: image.clone(),
             board: Board::new(image, still),
             text: String::new(),
         }
+    }
+
+    /// A fresh board with the same sketch, that goes on after some traps.
+    pub fn again(&self, allowed: &[Trap]) -> Bench {
+        Bench::with(self.image.clone(), allowed)
+    }
+
+    /// Why the board stops after `key` was typed into a sketch that is ready.
+    pub fn stop_after(mut self, key: char) -> Stop {
+        self.wait_for("ready", 3.0);
+        self.type_in(&key.to_string());
+        self.board.run(SECOND / 2);
+        let stop = self.board.stop().cloned();
+        stop.unwrap_or_else(|| {
+            panic!(
+                "{key} did not stop the board; {:?}",
+                self.board.take_events()
+            )
+        })
     }
 
     /// Runs for a while. A trap ends the test.

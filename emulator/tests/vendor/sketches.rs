@@ -2,6 +2,7 @@
 
 use vrduino_emulator::peripherals::spi::Wire;
 use vrduino_emulator::time;
+use vrduino_emulator::witness::Trap;
 
 use crate::bench::Bench;
 
@@ -64,6 +65,12 @@ pub const ALL: &[Test] = &[
     ("spi_transfers_over_a_loop", "spi", FAST, spi),
     ("dma_moves_memory_serial_data_and_samples", "dma", FAST, dma),
     ("flash_is_erased_and_programmed", "flash", FAST, flash),
+    (
+        "misuse_of_the_flash_stops_the_board_by_name",
+        "flash_misuse",
+        FAST,
+        flash_misuse,
+    ),
     ("other_modules_count_and_measure", "modules", FAST, modules),
     (
         "a_request_at_134_baud_starts_the_loader",
@@ -355,6 +362,30 @@ fn flash(bench: &mut Bench) {
         "blank ffffffff",
     ];
     assert_eq!(printed, expected);
+}
+
+/// One rule broken on each fresh board.
+fn flash_misuse(bench: &mut Bench) {
+    let broken = [
+        ('c', Trap::FlashCommand),
+        ('a', Trap::FlashCommand),
+        ('o', Trap::FlashCommand),
+        ('p', Trap::FlashProtected),
+        ('b', Trap::FlashBusy),
+        ('n', Trap::FlashNotErased),
+        ('w', Trap::FlashReadWhileWrite),
+        ('s', Trap::FlashSecured),
+        ('r', Trap::EepromNotReady),
+        ('f', Trap::FlashCommand),
+        ('t', Trap::FlashStore),
+    ];
+    for (key, trap) in broken {
+        let stop = bench.again(&[]).stop_after(key);
+        assert_eq!(stop.trap, trap, "after {key}: {stop}");
+        assert!(stop.place.contains('+'), "no symbol in {}", stop.place);
+    }
+    let stop = bench.again(&[Trap::FlashCommand]).stop_after('e');
+    assert_eq!(stop.trap, Trap::FlashErrorFlags, "{stop}");
 }
 
 fn modules(bench: &mut Bench) {
