@@ -105,6 +105,9 @@ impl Communication {
             }
         }
         self.spi.advance(clocks);
-        self.i2c1.advance(clocks.now, pins, &mut Nobody);
+        if self.i2c1.next_event() <= clocks.now {
+            self.i2c1
+                .advance(clocks.now, &pins.second_bus(), &mut Nobody);
+        }
     }
 }

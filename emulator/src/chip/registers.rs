@@ -90,7 +90,9 @@ impl Chip {
             0x45 => self.touch.read(offset, width),
             0x67 => {
                 let bus_hz = self.bus_hz();
-                self.communication.i2c1.read(offset, now, bus_hz)
+                self.communication
+                    .i2c1
+                    .read(offset, now, bus_hz, &mut self.witness)
             }
             0x6A..=0x6C => self.communication.uarts[page as usize - 0x6A].read(offset),
             0x74 => self.analog.reference.read(offset, now),
@@ -119,10 +121,12 @@ impl Chip {
             0x3E | 0x41 => self.kept.write(address, width, value),
             0x40 => self.timers.low_power.write(offset, value, &clocks),
             0x45 => self.touch.write(offset, value, now),
-            0x67 => self
-                .communication
-                .i2c1
-                .write(offset, byte, now, clocks.bus_hz, &self.pins),
+            0x67 => {
+                let (pins, witness) = (self.pins.second_bus(), &mut self.witness);
+                self.communication
+                    .i2c1
+                    .write(offset, byte, (now, clocks.bus_hz), &pins, witness);
+            }
             0x6A..=0x6C => {
                 let n = page as usize - 0x6A;
                 self.communication.uarts[n].write(
