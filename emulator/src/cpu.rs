@@ -132,13 +132,6 @@ impl Cpu {
         }
     }
 
-    /// Shows the processor new contents of its flash, or hides them while a command works on the flash: every access
-    /// then goes to the flash module.
-    pub fn show_flash(&mut self, contents: Option<&[u8]>) {
-        self.map.show_flash(&self.space, contents);
-        self.code.fill(Op::UNMET);
-    }
-
     fn core(space: &Arc<AddressSpace>) -> ArmV7m {
         // MK20DX256: sixteen interrupt priorities, no memory protection unit.
         let mut config = Config::CORTEX_M4.with_priority_bits(4);

@@ -9,7 +9,8 @@ use rsemu::core::space::{
 };
 use rsemu::core::value::{Endian, Width};
 
-use super::{FLASH_SIZE, RAM_BASE, RAM_SIZE};
+use super::op::Op;
+use super::{Cpu, FLASH_SIZE, RAM_BASE, RAM_SIZE};
 
 const PERIPHERALS_BASE: u32 = 0x4000_0000;
 const PERIPHERALS_SIZE: u32 = 0x0010_0000;
@@ -124,7 +125,7 @@ impl Map {
     }
 
     /// Puts new contents into the flash, or the flash module in its place.
-    pub(super) fn show_flash(&self, space: &AddressSpace, contents: Option<&[u8]>) {
+    fn show_flash(&self, space: &AddressSpace, contents: Option<&[u8]>) {
         let region = match contents {
             Some(contents) => readable(contents),
             None => {
@@ -136,6 +137,15 @@ impl Map {
             .topology()
             .replace(self.flash, Mapping::new(region, 0))
             .expect("the region is as large as the one before");
+    }
+}
+
+impl Cpu {
+    /// Shows the processor new contents of its flash, or hides them while a command works on the flash: every access
+    /// then goes to the flash module.
+    pub fn show_flash(&mut self, contents: Option<&[u8]>) {
+        self.map.show_flash(&self.space, contents);
+        self.code.fill(Op::UNMET);
     }
 }
 

@@ -47,7 +47,7 @@ const CALIBRATION: [u32; 18] = [
 
 /// What a converter is connected to, at the moment of a conversion.
 pub trait Inputs {
-    /// Voltage of a channel (V); `alternate` selects the "b" inputs (CFG2[MUXSEL]).
+    /// Voltage of a channel (V); `alternate` selects the "b" inputs (MUXSEL of CFG2).
     fn voltage(&self, channel: u32, alternate: bool) -> f64;
     /// Voltage between the two inputs of a differential channel (V).
     fn difference(&self, channel: u32) -> f64;

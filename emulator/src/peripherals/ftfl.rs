@@ -1,5 +1,5 @@
 //! Flash memory module (K20 manual, chapter "Flash Memory Module (FTFL)"): registers, command launch, FlexRAM and the
-//! EEPROM that it emulates. What the commands do is in [`commands`], the memories are in [`memory`].
+//! EEPROM that it emulates. What the commands do is in `commands`, the memories are in `memory`.
 
 mod commands;
 
