@@ -7,6 +7,9 @@ mod bench;
 #[path = "vendor/toolchain.rs"]
 mod toolchain;
 
+#[path = "vendor/flash.rs"]
+mod flash;
+
 #[path = "vendor/sketches.rs"]
 mod sketches;
 

@@ -159,7 +159,7 @@ impl Pins {
         }
     }
 
-    /// Which peripheral a pin is connected to (PCR[MUX]).
+    /// Which peripheral a pin is connected to (MUX of its PCR).
     pub fn function(&self, port: usize, bit: u32) -> u32 {
         self.ports[port].mux(bit)
     }

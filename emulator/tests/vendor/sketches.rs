@@ -1,10 +1,10 @@
 //! What each sketch has to print.
 
 use vrduino_emulator::peripherals::spi::Wire;
-use vrduino_emulator::time;
-use vrduino_emulator::witness::Trap;
+use vrduino_emulator::time::{self, MICROSECOND};
 
 use crate::bench::Bench;
+use crate::flash::{eeprom, flash, flash_misuse};
 
 /// A test's name, its sketch, the clock it is built for (Hz), and what has to come of it.
 type Test = (&'static str, &'static str, u32, fn(&mut Bench));
@@ -61,6 +61,7 @@ pub const ALL: &[Test] = &[
         FAST,
         pins,
     ),
+    ("pulses_are_measured", "capture", FAST, capture),
     ("timers_make_pulses", "pwm", FAST, pulses),
     ("spi_transfers_over_a_loop", "spi", FAST, spi),
     ("dma_moves_memory_serial_data_and_samples", "dma", FAST, dma),
@@ -152,26 +153,6 @@ fn interval_timers(bench: &mut Bench) {
         assert_near("calls in 100 ms", *calls, expected, 1.0);
     }
     assert_eq!(bench.number("again ", 0.1), 1.0);
-}
-
-fn eeprom(bench: &mut Bench) {
-    assert_eq!(bench.number("found ", 3.0), 255.0);
-    let took = bench.number("write us ", 1.0);
-    assert!(
-        (100.0..2000.0).contains(&took),
-        "a byte was written in {took} µs"
-    );
-    for life in [1.0, 2.0] {
-        bench.forget();
-        assert_eq!(bench.number("found ", 4.0), life);
-        assert_eq!(bench.wait_for("dword ", 1.0), "12345678");
-        assert_eq!(bench.wait_for("word ", 1.0), "12345678");
-        bench.wait_for("block", 1.0);
-        assert!(bench.text.contains("word ABCD"), "{}", bench.text);
-        assert_eq!(bench.number("untouched ", 1.0), 255.0);
-    }
-    bench.wait_for("three lives", 1.0);
-    assert_eq!(bench.board.resets(), 2);
 }
 
 fn wire(bench: &mut Bench) {
@@ -316,6 +297,26 @@ fn pulses(bench: &mut Bench) {
     }
 }
 
+fn capture(bench: &mut Bench) {
+    let pulse = |bench: &mut Bench, pin, microseconds| {
+        bench.board.chip().drive(pin, Some(true));
+        bench.board.run(microseconds * MICROSECOND);
+        bench.board.chip().drive(pin, Some(false));
+        bench.seconds(0.002);
+    };
+    bench.wait_for("waiting", 3.0);
+    bench.seconds(0.005);
+    pulse(bench, 4, 1500);
+    assert_near("pulseIn", bench.number("pulse ", 1.0), 1500.0, 2.0);
+    for microseconds in [700, 2500] {
+        pulse(bench, 3, microseconds);
+    }
+    let widths = bench.numbers("widths ", 1.0);
+    // Counts of half the bus clock.
+    assert_near("700 µs", widths[0], 12_600.0, 5.0);
+    assert_near("2500 µs", widths[1], 45_000.0, 5.0);
+}
+
 fn spi(bench: &mut Bench) {
     bench.board.chip().communication.spi.wire = Wire::Loopback;
     bench.wait_for("spi ", 3.0);
@@ -347,45 +348,6 @@ fn dma(bench: &mut Bench) {
     assert_eq!(bench.wait_for("sampler ", 1.0), "1 512 512");
     let sent = &bench.board.chip().communication.uarts[0].sent.clone();
     assert_eq!(String::from_utf8_lossy(sent), "sent by dma\n");
-}
-
-fn flash(bench: &mut Bench) {
-    bench.wait_for("blank ", 3.0);
-    bench.seconds(0.1);
-    let printed: Vec<&str> = bench.text.lines().collect();
-    let expected = [
-        "erase 00",
-        "blank ffffffff",
-        "program 00",
-        "read deadbeef ffffffff",
-        "erase 00",
-        "blank ffffffff",
-    ];
-    assert_eq!(printed, expected);
-}
-
-/// One rule broken on each fresh board.
-fn flash_misuse(bench: &mut Bench) {
-    let broken = [
-        ('c', Trap::FlashCommand),
-        ('a', Trap::FlashCommand),
-        ('o', Trap::FlashCommand),
-        ('p', Trap::FlashProtected),
-        ('b', Trap::FlashBusy),
-        ('n', Trap::FlashNotErased),
-        ('w', Trap::FlashReadWhileWrite),
-        ('s', Trap::FlashSecured),
-        ('r', Trap::EepromNotReady),
-        ('f', Trap::FlashCommand),
-        ('t', Trap::FlashStore),
-    ];
-    for (key, trap) in broken {
-        let stop = bench.again(&[]).stop_after(key);
-        assert_eq!(stop.trap, trap, "after {key}: {stop}");
-        assert!(stop.place.contains('+'), "no symbol in {}", stop.place);
-    }
-    let stop = bench.again(&[Trap::FlashCommand]).stop_after('e');
-    assert_eq!(stop.trap, Trap::FlashErrorFlags, "{stop}");
 }
 
 fn modules(bench: &mut Bench) {
