@@ -84,7 +84,7 @@ struct Storm {
 impl Board {
     /// A board at power-on with `image` in its flash.
     pub fn new(image: Image, setup: Setup) -> Board {
-        let sensor = Mpu9250::new(setup.motion, setup.who_am_i, setup.sensor_clock_error);
+        let sensor = Mpu9250::new(Arc::from(setup.motion), setup.part);
         let chip = Chip::new(sensor, &image.flash);
         let ram = chip.ram.clone();
         let core_hz = chip.core_hz();

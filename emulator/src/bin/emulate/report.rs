@@ -76,6 +76,13 @@ impl Report {
             for complaint in chip.host.complaints.iter().chain(&chip.usb.complaints) {
                 eprintln!("usb     {complaint}");
             }
+            for (at, complaint) in chip.sensor.complaints.list() {
+                eprintln!(
+                    "sensor  {complaint} ({}), first at {:.4} s",
+                    complaint.section(),
+                    time::seconds(*at)
+                );
+            }
         }
         match self.first {
             Some(first) => {
