@@ -20,6 +20,7 @@ use rsemu::core::value::Width;
 use rsemu::cpu::arm::v7m::sys::{Exception, Sys};
 use rsemu::cpu::arm::v7m::{ArmV7m, Config, Regs};
 
+use memory::Map;
 pub use memory::{PeripheralBus, Ram};
 
 use crate::witness::Trap;
@@ -92,6 +93,7 @@ struct Owed {
 pub struct Cpu {
     core: ArmV7m,
     space: Arc<AddressSpace>,
+    map: Map,
     /// The registers after the last step, and before it.
     registers: Regs,
     before: Regs,
@@ -112,10 +114,11 @@ pub struct Cpu {
 impl Cpu {
     /// A processor about to leave reset, with `flash` at address 0.
     pub fn new(flash: &[u8], ram: &Ram, peripherals: Arc<dyn PeripheralBus>, pace: Pace) -> Cpu {
-        let space = memory::map(flash, ram, peripherals);
+        let (space, map) = Map::new(flash, ram, peripherals);
         Cpu {
             core: Cpu::core(&space),
             space,
+            map,
             registers: Regs::new(),
             before: Regs::new(),
             code: vec![Op::UNMET; FLASH_SIZE as usize / 2],
@@ -411,7 +414,11 @@ fn settle(sys: &mut Sys, owed: &mut Owed) {
     } else if owed.systick > 0 {
         count_systick(sys, std::mem::take(&mut owed.systick) as u64);
     } else {
-        let room = i64::from(sys.syst_rvr.saturating_sub(sys.syst_cvr));
+        // At 0 it has just expired, and would do so again.
+        let room = match sys.syst_cvr {
+            0 => 0,
+            count => i64::from(sys.syst_rvr.saturating_sub(count)),
+        };
         let back = room.min(-owed.systick);
         sys.syst_cvr += back as u32;
         owed.systick += back;

@@ -148,6 +148,12 @@ impl Host {
         self.go_on();
     }
 
+    /// Sets the speed of the serial port, which a PC does as a request to interface 0; 8 bits, no parity, one stop bit.
+    pub fn set_baud(&mut self, baud: u32) {
+        let [b0, b1, b2, b3] = baud.to_le_bytes();
+        self.request(Request::write(0x21, 0x20, 0, 0, &[b0, b1, b2, b3, 0, 0, 8]));
+    }
+
     /// Takes how the queued requests ended.
     pub fn take_outcomes(&mut self) -> Vec<(Request, Outcome)> {
         self.serial.take_outcomes()

@@ -71,7 +71,7 @@ impl Measure {
         Measure {
             awake: Cycles::default(),
             stack_low: u32::MAX,
-            latencies: Default::default(),
+            latencies: [Latency::default(); INTERRUPTS.len()],
             calls: Calls::default(),
             timed,
             call: None,

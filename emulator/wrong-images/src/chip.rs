@@ -201,8 +201,8 @@ mod assembly {
 
     /// Executes BKPT.
     pub fn breakpoint() {
-        // SAFETY: without a debugger the processor faults.
-        unsafe { asm!("bkpt #0") }
+        // SAFETY: the processor faults; 0 and 251 would call the board's loader.
+        unsafe { asm!("bkpt #1") }
     }
 
     /// Loads two words at once.

@@ -113,6 +113,7 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     let mut script = arguments.script();
     while limit.is_none_or(|limit| board.now() < limit)
         && board.stop().is_none()
+        && board.in_loader().is_none()
         && !interrupted.load(Ordering::Relaxed)
     {
         script.apply(&mut board);
