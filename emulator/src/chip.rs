@@ -89,6 +89,7 @@ pub struct Chip {
     rest: RegisterFile,
     /// Why the chip has to be reset now.
     pub reset_wanted: Option<(Cause, &'static str)>,
+    complaints_heard: usize,
     /// What the program did that silicon does not forgive.
     pub witness: Witness,
 }
@@ -127,6 +128,7 @@ impl Chip {
             kept: RegisterFile::default(),
             rest: RegisterFile::default(),
             reset_wanted: None,
+            complaints_heard: 0,
             witness: Witness::default(),
         }
     }
@@ -212,9 +214,11 @@ impl Chip {
         self.timer.advance(now, bus_hz);
         self.advance_modules();
         self.i2c.advance(now, &self.pins, &mut self.sensor);
+        self.hear_the_sensor();
         if now >= self.host.next_event() {
             let clocked = self.usb_clocked();
-            self.host.advance(now, clocked, &mut self.usb, &self.ram);
+            self.host
+                .advance(now, clocked, &mut self.usb, &self.ram, &mut self.witness);
         }
     }
 
@@ -242,6 +246,18 @@ impl Chip {
                 format!("core, bus and flash clock became {core}, {bus} and {flash} Hz"),
             );
         }
+    }
+
+    /// Passes on what the sensor has to complain of since the last time.
+    fn hear_the_sensor(&mut self) {
+        let list = self.sensor.complaints.list();
+        for (_, complaint) in list.iter().skip(self.complaints_heard) {
+            if let Some(trap) = complaint.trap() {
+                let section = complaint.section();
+                self.witness.saw(trap, format!("{complaint} ({section})"));
+            }
+        }
+        self.complaints_heard = list.len();
     }
 
     fn judge_usb_clock(&mut self) {
@@ -399,7 +415,7 @@ impl Chip {
                     .write(offset, byte, (now, bus_hz), &self.pins, &mut self.witness);
             }
             0x72 => {
-                self.usb.write(offset, byte);
+                self.usb.write(offset, byte, &mut self.witness);
                 self.judge_usb_clock();
             }
             0xFF => self.write_gpio(offset, width, value),

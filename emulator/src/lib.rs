@@ -26,6 +26,8 @@ pub mod host;
 
 pub mod board;
 
+pub mod usbip;
+
 pub mod image;
 
 pub mod firmware;

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::time::Ticks;
+use crate::witness::Trap;
 
 /// A misuse of the sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,6 +55,31 @@ pub enum Complaint {
 }
 
 impl Complaint {
+    /// The trap that stops a program which does this; `None` if it only gets worse data.
+    pub fn trap(self) -> Option<Trap> {
+        Some(match self {
+            Complaint::GyroNotStarted => return None,
+            Complaint::ReservedRegister(_)
+            | Complaint::ReservedAccelRate(_)
+            | Complaint::MagReservedRegister(_)
+            | Complaint::MagReservedSelfTestBit => Trap::SensorReserved,
+            Complaint::ReadOnlyRegister(_) | Complaint::MagReadOnlyRegister(_) => {
+                Trap::SensorReadOnly
+            }
+            Complaint::BusyAfterReset => Trap::SensorNotReady,
+            Complaint::FifoEmpty | Complaint::FifoDisabled => Trap::SensorFifo,
+            Complaint::I2cDisabled
+            | Complaint::MasterResetWhileBusy
+            | Complaint::MagI2cDisabled => Trap::SensorLost,
+            Complaint::MagModeWithoutPowerDown { .. }
+            | Complaint::MagModeTooSoon
+            | Complaint::MagModeProhibited(_)
+            | Complaint::MagFuseRomClosed
+            | Complaint::MagSelfTestWithoutField => Trap::MagnetometerMode,
+            Complaint::MagStatus2NotRead => Trap::MagnetometerStale,
+        })
+    }
+
     /// Where the rule is written: PS is the product specification, RM the register map of the MPU-9250, AK the data
     /// sheet of the AK8963.
     pub fn section(self) -> &'static str {

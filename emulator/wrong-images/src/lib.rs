@@ -9,6 +9,9 @@ pub mod chip;
 
 pub mod registers;
 
+#[cfg(target_os = "none")]
+pub mod usb;
+
 /// Defines an image: what it does when it has started.
 ///
 /// With `reset: …` the image also says what happens at once after reset, before memory is initialised; otherwise the

@@ -39,6 +39,11 @@ pub struct Arguments {
     #[arg(long)]
     pub realtime: bool,
 
+    /// Offer the device to another host over USB/IP on this port of 127.0.0.1, in real time, instead of reading it; 0 is
+    /// any free port, which is printed
+    #[arg(long, value_name = "PORT", conflicts_with = "typed")]
+    pub usbip: Option<u16>,
+
     /// Type these keys on the serial port, e.g. 2@3.5 for the key 2 at 3.5 s; may be given more than once
     #[arg(long = "type", value_name = "KEYS@S")]
     pub typed: Vec<Typed>,
@@ -102,7 +107,7 @@ pub enum PartKind {
 
 const FAULT_HELP: &str = "Break something, from S on (else from the start) and until T (else for good): absent (no sensor \
                           answers), frozen (no new samples), brown-out (the sensor loses its settings), stuck-sda (held \
-                          until it is clocked free), stuck-scl, no-pull-ups, unread (nobody reads the port), unplugged; may be given \
+                          until it is clocked free), stuck-scl, no-pull-ups, unread (nobody reads the port), unplugged, noisy-usb (damaged packets and lost handshakes); may be given \
                           more than once";
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -181,6 +186,7 @@ enum Kind {
     NoPullUps,
     Unread,
     Unplugged,
+    NoisyUsb,
 }
 
 /// Something broken for a while.
@@ -210,7 +216,7 @@ impl FromStr for Fault {
         }
         Ok(Fault {
             kind: Kind::from_str(kind, true)
-                .map_err(|_| "give one of absent, frozen, brown-out, stuck-sda, stuck-scl, no-pull-ups, unread, unplugged")?,
+                .map_err(|_| "give one of absent, frozen, brown-out, stuck-sda, stuck-scl, no-pull-ups, unread, unplugged, noisy-usb")?,
             from: time::ticks(from),
             until: until.map_or(Ticks::MAX, time::ticks),
         })
@@ -292,6 +298,7 @@ impl Script {
                 Kind::NoPullUps => chip.pins.no_pull_ups = due,
                 Kind::Unread => chip.host.set_reading(!due),
                 Kind::Unplugged => chip.host.set_plugged(!due),
+                Kind::NoisyUsb => chip.host.set_noise(if due { 5 } else { 0 }),
             }
         }
     }

@@ -16,9 +16,11 @@ use clap::Parser;
 use vrduino_emulator::board::{Board, Setup};
 use vrduino_emulator::cpu::Pace;
 use vrduino_emulator::firmware;
+use vrduino_emulator::host::Host;
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::{self, Motion};
 use vrduino_emulator::time::{self, MILLISECOND, Ticks};
+use vrduino_emulator::usbip;
 use vrduino_emulator::witness::{Stop, Trap};
 
 use arguments::{Arguments, PartKind};
@@ -87,9 +89,13 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     };
     let mut board = Board::new(image, setup);
     let terminal = PseudoTerminal::open()?;
+    let exporter = arguments.usbip.map(export).transpose()?;
     eprintln!("image   {}", path.display());
     eprintln!("motion  {description}");
-    if let Some(path) = terminal.path() {
+    if let Some(exporter) = &exporter {
+        board.chip().host = Host::exporting();
+        eprintln!("usb/ip  {}, bus ID {}", exporter.address(), usbip::BUS_ID);
+    } else if let Some(path) = terminal.path() {
         eprintln!("port    {path}");
     }
     let limit = arguments.seconds.or(ends).map(time::ticks);
@@ -100,7 +106,8 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     let mut session = Session {
         terminal,
         report: Report::new(),
-        realtime: arguments.realtime,
+        realtime: arguments.realtime || exporter.is_some(),
+        exporter,
         paced_since: None,
     };
     let mut script = arguments.script();
@@ -132,11 +139,20 @@ fn choose_motion(arguments: &Arguments) -> Result<Box<dyn Motion>, Error> {
     Ok(motion::skip(motion, arguments.start)?)
 }
 
+/// Offers the device on a port, instead of using it.
+fn export(port: u16) -> Result<usbip::Server, Error> {
+    usbip::Server::open(port).map_err(|error| {
+        format!("port {port} of 127.0.0.1 cannot be opened: {error}; give another, or 0 for any free one").into()
+    })
+}
+
 /// The PC's side: where the stream goes and how fast.
 struct Session {
     terminal: PseudoTerminal,
     report: Report,
     realtime: bool,
+    /// Who has the device, if it is not used here.
+    exporter: Option<usbip::Server>,
     /// Wall and emulated time from which on the run is held to real time.
     paced_since: Option<(Instant, Ticks)>,
 }
@@ -145,6 +161,12 @@ impl Session {
     fn pass_on(&mut self, board: &mut Board) -> io::Result<()> {
         for event in board.take_events() {
             eprintln!("{event}");
+        }
+        if let Some(exporter) = &mut self.exporter {
+            exporter.serve(board);
+            for note in exporter.take_notes() {
+                eprintln!("{:9.4} s  {note}", time::seconds(board.now()));
+            }
         }
         let attached = self.terminal.is_attached();
         let received = {

@@ -73,9 +73,6 @@ impl Report {
                 ),
                 None => eprintln!("device  none: the image did not bring up its USB port"),
             }
-            for complaint in chip.host.complaints.iter().chain(&chip.usb.complaints) {
-                eprintln!("usb     {complaint}");
-            }
             for (at, complaint) in chip.sensor.complaints.list() {
                 eprintln!(
                     "sensor  {complaint} ({}), first at {:.4} s",
