@@ -104,6 +104,33 @@ fn the_board_survives_a_bus_reset_a_replug_and_back_to_back_requests() {
 }
 
 #[test]
+fn a_request_at_134_baud_hands_the_board_to_its_loader_with_and_without_a_sensor() {
+    for absent in [false, true] {
+        let mut run = Run::still();
+        run.board.chip().sensor.faults.absent = absent;
+        run.seconds(2.5);
+        // Any other speed is only remembered.
+        run.board.chip().host.set_baud(9600);
+        run.seconds(0.1);
+        assert_eq!(run.board.in_loader(), None);
+        let asked = run.board.now();
+        run.board.chip().host.set_baud(134);
+        run.seconds(0.1);
+        let entered = run.board.in_loader().expect("the loader has the board");
+        let took = time::seconds(entered - asked);
+        assert!((0.015..0.025).contains(&took), "after {took} s");
+        let outcomes = run.board.chip().host.take_outcomes();
+        let acknowledged =
+            |(_, outcome): &(Request, Outcome)| *outcome == Outcome::Done(Vec::new());
+        assert!(
+            outcomes.len() == 2 && outcomes.iter().all(acknowledged),
+            "{outcomes:?}"
+        );
+        assert_eq!(run.board.resets(), 0);
+    }
+}
+
+#[test]
 fn bus_resets_at_any_moment_of_the_traffic_leave_nothing_behind() {
     let mut run = Run::still();
     run.seconds(1.2);
@@ -151,33 +178,6 @@ fn the_board_sleeps_with_the_bus_and_streams_again_when_it_is_resumed() {
         assert!(run.orientations.len() > asleep + 20, "it does not go on");
     }
     assert_eq!((run.board.stop(), run.board.resets()), (None, 0));
-}
-
-#[test]
-fn a_request_at_134_baud_hands_the_board_to_its_loader_with_and_without_a_sensor() {
-    for absent in [false, true] {
-        let mut run = Run::still();
-        run.board.chip().sensor.faults.absent = absent;
-        run.seconds(2.5);
-        // Any other speed is only remembered.
-        run.board.chip().host.set_baud(9600);
-        run.seconds(0.1);
-        assert_eq!(run.board.in_loader(), None);
-        let asked = run.board.now();
-        run.board.chip().host.set_baud(134);
-        run.seconds(0.1);
-        let entered = run.board.in_loader().expect("the loader has the board");
-        let took = time::seconds(entered - asked);
-        assert!((0.015..0.025).contains(&took), "after {took} s");
-        let outcomes = run.board.chip().host.take_outcomes();
-        let acknowledged =
-            |(_, outcome): &(Request, Outcome)| *outcome == Outcome::Done(Vec::new());
-        assert!(
-            outcomes.len() == 2 && outcomes.iter().all(acknowledged),
-            "{outcomes:?}"
-        );
-        assert_eq!(run.board.resets(), 0);
-    }
 }
 
 #[test]

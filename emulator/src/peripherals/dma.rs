@@ -43,6 +43,9 @@ const START: u16 = 1 << 0;
 /// CITER and BITER: link after each minor loop.
 const ELINK: u16 = 1 << 15;
 
+/// Bytes that one minor loop may move here: more than all memory, so that none runs for minutes.
+const LONGEST: u32 = 1 << 20;
+
 /// Error status: source address, offset, destination address, offset, counts, scatter/gather, source bus, destination
 /// bus; and "some error".
 const SAE: u32 = 1 << 7;
@@ -178,10 +181,9 @@ impl Dma {
             return Err(DAE);
         }
         let count = self.half(channel, CITER);
-        if !bytes.is_multiple_of(step)
-            || bytes == 0
-            || count == 0
-            || (count ^ self.half(channel, BITER)) & ELINK != 0
+        let left = count & count_mask(count);
+        let links_differ = (count ^ self.half(channel, BITER)) & ELINK != 0;
+        if bytes == 0 || bytes > LONGEST || !bytes.is_multiple_of(step) || left == 0 || links_differ
         {
             return Err(NCE);
         }
@@ -236,7 +238,7 @@ impl Dma {
     fn count(&mut self, channel: usize, bus: &mut dyn Bus) -> Result<(), u32> {
         let (citer, biter) = (self.half(channel, CITER), self.half(channel, BITER));
         let linked = citer & ELINK != 0;
-        let mask = if linked { 0x1FF } else { 0x7FFF };
+        let mask = count_mask(citer);
         let left = (citer & mask) - 1;
         let csr = self.half(channel, CSR);
         if left > 0 {
@@ -390,6 +392,11 @@ impl Dma {
             _ => self.interrupts &= !channels,
         }
     }
+}
+
+/// The count in CITER or BITER: nine bits where the rest names a channel to link to.
+fn count_mask(register: u16) -> u16 {
+    if register & ELINK != 0 { 0x1FF } else { 0x7FFF }
 }
 
 /// An address after an access, within its modulo if it has one.

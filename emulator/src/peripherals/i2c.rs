@@ -66,7 +66,7 @@ pub struct I2c {
 }
 
 /// The module counts SCL's high time from when it sees the line high, so the line's rise lengthens every period. The
-/// I2C-bus specification allows 300 ns; Teensyduino's authors found 400 kHz where the divider alone makes 428.
+/// I2C-bus specification allows 300 ns; Teensyduino's Wire takes the divider for 428 kHz to make 400 kHz.
 const RISE: Ticks = 170 * time::MICROSECOND / 1000;
 /// The fastest that the MPU-9250's registers can be accessed.
 const FASTEST_HZ: u64 = 400_000;

@@ -142,7 +142,13 @@ fn delays(bench: &mut Bench) {
 
 fn interval_timers(bench: &mut Bench) {
     bench.wait_for("again", 3.0);
-    assert_eq!(bench.number("period ", 0.1), 7200.0, "cycles in 100 µs");
+    // The counter's own reading may be some cycles off at either end of the span.
+    assert_near(
+        "cycles in 100 µs",
+        bench.number("period ", 0.1),
+        7200.0,
+        1.0,
+    );
     let calls: Vec<f64> = bench
         .text
         .lines()
