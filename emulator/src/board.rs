@@ -79,7 +79,7 @@ impl Board {
     /// A board at power-on with `image` in its flash.
     pub fn new(image: Image, setup: Setup) -> Board {
         let configuration = [image.flash[0x40C], image.flash[0x40D]];
-        let sensor = Mpu9250::new(setup.motion, setup.who_am_i, setup.sensor_clock_error);
+        let sensor = Mpu9250::new(Arc::from(setup.motion), setup.part);
         let chip = Chip::new(sensor, configuration);
         let ram = chip.ram.clone();
         let core_hz = chip.core_hz();

@@ -132,6 +132,7 @@ pub struct Chip {
     flash_configuration: [u8; 2],
     /// Why the chip has to be reset now.
     pub reset_wanted: Option<(Cause, &'static str)>,
+    complaints_heard: usize,
     /// What the program did that silicon does not forgive.
     pub witness: Witness,
 }
@@ -160,6 +161,7 @@ impl Chip {
             rest: RegisterFile::default(),
             flash_configuration,
             reset_wanted: None,
+            complaints_heard: 0,
             witness: Witness::default(),
         }
     }
@@ -234,6 +236,7 @@ impl Chip {
         }
         self.timer.advance(now, bus_hz);
         self.i2c.advance(now, &self.pins, &mut self.sensor);
+        self.hear_the_sensor();
         if now >= self.host.next_event() {
             let clocked = self.usb_clocked();
             self.host
@@ -265,6 +268,18 @@ impl Chip {
                 format!("core, bus and flash clock became {core}, {bus} and {flash} Hz"),
             );
         }
+    }
+
+    /// Passes on what the sensor has to complain of since the last time.
+    fn hear_the_sensor(&mut self) {
+        let list = self.sensor.complaints.list();
+        for (_, complaint) in list.iter().skip(self.complaints_heard) {
+            if let Some(trap) = complaint.trap() {
+                let section = complaint.section();
+                self.witness.saw(trap, format!("{complaint} ({section})"));
+            }
+        }
+        self.complaints_heard = list.len();
     }
 
     fn judge_usb_clock(&mut self) {

@@ -32,6 +32,8 @@ pub mod image;
 
 pub mod firmware;
 
+pub mod random;
+
 pub mod witness;
 
 pub mod time;

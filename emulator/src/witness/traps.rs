@@ -265,9 +265,27 @@ traps! {
         "the board is a device on its only USB port, and host mode is not modelled"
 
     // Sensor.
-    /// A register of the sensor that must not be written.
+    /// A register of the sensor that must be left alone.
     SensorReserved "sensor-reserved"
-        "reserved registers of the MPU-9250 must not be written (register map, section 3)"
+        "reserved registers and values of the MPU-9250 and its AK8963 must not be used (register map, section 3; AK8963 data sheet, 8.1)"
+    /// A register of the sensor that can only be read.
+    SensorReadOnly "sensor-read-only"
+        "a write to a read-only register of the sensor is lost (register map, section 3; AK8963 data sheet, 8.2)"
+    /// The sensor was spoken to while it starts.
+    SensorNotReady "sensor-not-ready"
+        "after H_RESET the sensor does not answer until it has started, 11 ms typically and 100 ms at most (product specification 3.4.2)"
+    /// The sensor's FIFO was read when there is nothing to read.
+    SensorFifo "sensor-fifo"
+        "FIFO_R_W may be read only with FIFO_EN set and while FIFO_COUNT is not 0 (register map 4.33 and 4.37)"
+    /// The sensor no longer listens.
+    SensorLost "sensor-lost"
+        "I2C_IF_DIS, I2C_MST_RST during a transfer and I2CDIS silence a chip until it loses power or is reset (register map 4.33; AK8963 data sheet, 8.3.10)"
+    /// A mode of the magnetometer that cannot be entered like this.
+    MagnetometerMode "magnetometer-mode"
+        "the AK8963 changes its mode through power-down, with 100 µs there, and opens its fuse ROM in a mode of its own (AK8963 data sheet, 5.3.2, 6.3 and 6.4)"
+    /// The magnetometer's data was read without its end.
+    MagnetometerStale "magnetometer-stale"
+        "a measurement is held until ST2 is read; without that the data no longer changes (AK8963 data sheet, 6.4.3.2)"
 }
 
 impl std::fmt::Display for Trap {

@@ -23,11 +23,14 @@ use vrduino_emulator::time::{self, MILLISECOND, Ticks};
 use vrduino_emulator::usbip;
 use vrduino_emulator::witness::{Stop, Trap};
 
-use arguments::Arguments;
+use arguments::{Arguments, PartKind};
 use port::PseudoTerminal;
 use report::Report;
 
 type Error = Box<dyn std::error::Error>;
+
+/// The tracker's update of its estimators by one sample: what is timed unless something else is asked for.
+const FILTER: &str = "Tracker::track";
 
 /// Exit code of a run that ended in a trap.
 const TRAPPED: u8 = 3;
@@ -63,10 +66,18 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
         None => firmware::build(firmware::BuildOptions { quiet: true })?,
     };
     let image = Image::open(&path)?;
+    if let Some(function) = &arguments.time
+        && image.address_of(function).is_none()
+    {
+        return Err(format!(
+            "the image has no function, or more than one, whose path ends in {function}; compilers merge small \
+             functions into their callers unless they are marked #[inline(never)]"
+        )
+        .into());
+    }
     let setup = Setup {
         motion,
-        who_am_i: arguments.who_am_i,
-        sensor_clock_error: arguments.sensor_clock / 100.0,
+        part: arguments.part(),
         allowed: arguments.allowed(),
         pace: if arguments.pessimistic {
             Pace::Greatest
@@ -74,7 +85,7 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
             Pace::Least
         },
         skip_polling: true,
-        timed_function: arguments.time.clone().unwrap_or_default(),
+        timed_function: arguments.time.clone().unwrap_or_else(|| FILTER.into()),
     };
     let mut board = Board::new(image, setup);
     let terminal = PseudoTerminal::open()?;
@@ -120,7 +131,9 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
 fn choose_motion(arguments: &Arguments) -> Result<Box<dyn Motion>, Error> {
     let motion = match &arguments.motion {
         Some(path) => motion::open(path)?,
-        None => motion::built_in(),
+        // A part with errors of its own needs none added to what it feels.
+        None if arguments.part == PartKind::Perfect => motion::built_in(),
+        None => Box::new(motion::Head::new()),
     };
     Ok(motion::skip(motion, arguments.start)?)
 }

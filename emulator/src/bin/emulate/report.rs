@@ -73,6 +73,13 @@ impl Report {
                 ),
                 None => eprintln!("device  none: the image did not bring up its USB port"),
             }
+            for (at, complaint) in chip.sensor.complaints.list() {
+                eprintln!(
+                    "sensor  {complaint} ({}), first at {:.4} s",
+                    complaint.section(),
+                    time::seconds(*at)
+                );
+            }
         }
         match self.first {
             Some(first) => {
