@@ -34,7 +34,12 @@ fn board(trap: Trap, allowed: &[Trap]) -> Board {
 #[test]
 fn every_trap_stops_the_image_that_steps_into_it() {
     for &trap in Trap::ALL {
-        let mut board = board(trap, &[]);
+        // Error flags are left by another mistake, which has to be passed first.
+        let first: &[Trap] = match trap {
+            Trap::FlashErrorFlags => &[Trap::FlashCommand],
+            _ => &[],
+        };
+        let mut board = board(trap, first);
         board.run(6_000 * MILLISECOND);
         let stop = board
             .stop()

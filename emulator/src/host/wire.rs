@@ -47,9 +47,9 @@ impl Noise {
             return Disturbance::None;
         }
         self.passed += 1;
-        if self.passed % self.every != 0 {
+        if !self.passed.is_multiple_of(self.every) {
             Disturbance::None
-        } else if self.passed / self.every % 2 == 0 {
+        } else if (self.passed / self.every).is_multiple_of(2) {
             Disturbance::Handshake
         } else {
             Disturbance::Packet

@@ -7,6 +7,8 @@
 
 pub mod chip;
 
+pub mod flash;
+
 pub mod registers;
 
 #[cfg(target_os = "none")]
