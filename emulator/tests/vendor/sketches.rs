@@ -4,6 +4,7 @@ use vrduino_emulator::peripherals::spi::Wire;
 use vrduino_emulator::time::{self, MICROSECOND};
 
 use crate::bench::Bench;
+use crate::bring_up::bring_up;
 use crate::flash::{eeprom, flash, flash_misuse};
 
 /// A test's name, its sketch, the clock it is built for (Hz), and what has to come of it.
@@ -13,6 +14,7 @@ const FAST: u32 = 72_000_000;
 
 /// Every test.
 pub const ALL: &[Test] = &[
+    ("the_sheet_for_a_real_board_says_what_is_measured", "bring_up", FAST, bring_up),
     ("usb_serial_prints_and_echoes", "serial", FAST, usb_serial),
     (
         "usb_serial_works_at_48_mhz",
