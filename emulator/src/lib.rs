@@ -32,4 +32,6 @@ pub mod firmware;
 
 pub mod witness;
 
+pub mod random;
+
 pub mod time;

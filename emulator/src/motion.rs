@@ -11,7 +11,7 @@
 //! use vrduino_emulator::motion;
 //!
 //! let recording = motion::open("walk.imub".as_ref())?;
-//! let mut motion = motion::skip(recording, 30.0)?;
+//! let motion = motion::skip(recording, 30.0)?;
 //! println!("{}: {:?}", motion.describe(), motion.at(0.25).rate);
 //! # Ok::<(), motion::MotionError>(())
 //! ```
@@ -31,6 +31,8 @@ pub mod head;
 pub mod imperfections;
 
 pub mod imub;
+
+pub mod magnetic;
 
 mod recording;
 
@@ -64,17 +66,22 @@ pub struct Instant {
     /// Specific force along the body axes (m/s²): what an accelerometer reads, +9.81 on the upward
     /// axis at rest.
     pub force: [f64; 3],
+    /// Magnetic flux density along the body axes (µT), where it was recorded; see
+    /// [`Instant::magnetic_field`].
+    pub field: Option<[f64; 3]>,
     /// The true rotation body → world (y up), a unit quaternion w, x, y, z, where it is known.
     pub truth: Option<[f64; 4]>,
 }
 
 /// A motion the sensor is carried through.
-pub trait Motion: Send {
+///
+/// It can be asked by several at once: a snapshot of a board shares its motion with the original.
+pub trait Motion: Send + Sync {
     /// What the sensor feels `t` seconds after the motion began.
     ///
     /// Any order of times is allowed and the answer depends on `t` alone, so that two runs of the
     /// emulator see the same motion however they sample it. A negative time counts as zero.
-    fn at(&mut self, t: f64) -> Instant;
+    fn at(&self, t: f64) -> Instant;
 
     /// How long the motion lasts (s); `None` if it never ends.
     ///

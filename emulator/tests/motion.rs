@@ -19,7 +19,7 @@ fn close(a: [f64; 3], b: [f64; 3], tolerance: f64) -> bool {
 }
 
 /// Follows a motion by its angular rate alone and returns the largest angle to its truth (°).
-fn drift(motion: &mut dyn Motion, seconds: f64) -> f64 {
+fn drift(motion: &dyn Motion, seconds: f64) -> f64 {
     const STEP: f64 = 0.001;
     let mut attitude = motion.at(0.0).truth.unwrap();
     let mut worst: f64 = 0.0;
@@ -39,7 +39,7 @@ fn drift(motion: &mut dyn Motion, seconds: f64) -> f64 {
 
 #[test]
 fn the_head_motion_turns_as_its_rate_says() {
-    assert!(drift(&mut Head::new(), 20.0) < 0.01);
+    assert!(drift(&Head::new(), 20.0) < 0.01);
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn the_head_motion_begins_level_and_still() {
 
 #[test]
 fn the_head_motion_feels_gravity_and_stays_in_its_range() {
-    let mut head = Head::new();
+    let head = Head::new();
     let (mut fastest, mut furthest): (f64, f64) = (0.0, 0.0);
     for step in 0..60_000 {
         let instant = head.at(f64::from(step) * 0.002);
@@ -71,11 +71,11 @@ fn the_head_motion_feels_gravity_and_stays_in_its_range() {
 
 #[test]
 fn a_lever_arm_adds_the_acceleration_of_the_carried_sensor() {
-    let mut head = Head {
+    let head = Head {
         lever_arm: Head::ON_THE_NECK,
     };
     let step = 1e-3;
-    let mut place = |t: f64| rotate(head.at(t).truth.unwrap(), Head::ON_THE_NECK);
+    let place = |t: f64| rotate(head.at(t).truth.unwrap(), Head::ON_THE_NECK);
     let (before, now, after) = (place(9.0 - step), place(9.0), place(9.0 + step));
     let expected: [f64; 3] = std::array::from_fn(|i| {
         let gravity = if i == 1 { 9.81 } else { 0.0 };
@@ -90,9 +90,9 @@ fn a_lever_arm_adds_the_acceleration_of_the_carried_sensor() {
 #[test]
 fn imperfections_are_the_same_however_the_motion_is_sampled() {
     let imperfect = || Imperfect::new(Box::new(Head::new()), Imperfections::default());
-    let mut forward = imperfect();
+    let forward = imperfect();
     let seen: Vec<_> = (0..100).map(|i| forward.at(f64::from(i) * 0.01)).collect();
-    let mut backward = imperfect();
+    let backward = imperfect();
     for i in (0..100).rev() {
         assert_eq!(backward.at(f64::from(i) * 0.01), seen[i as usize]);
     }
@@ -104,7 +104,7 @@ fn imperfections_have_the_size_they_say() {
         seed: 7,
         ..Imperfections::default()
     };
-    let mut motion = Imperfect::new(Box::new(Turns::new(60.0, 0.0)), imperfections);
+    let motion = Imperfect::new(Box::new(Turns::new(60.0, 0.0)), imperfections);
     let samples: Vec<_> = (0..50_000)
         .map(|i| motion.at(f64::from(i) * 0.001))
         .collect();
@@ -126,7 +126,7 @@ fn imperfections_have_the_size_they_say() {
 
 #[test]
 fn scripted_turns_end_where_they_should() {
-    let mut turns =
+    let turns =
         Turns::new(2.0, 0.5)
             .turn([0.0, 3.0, 0.0], 90.0, 1.0)
             .turn([1.0, 0.0, 0.0], -30.0, 0.5);
@@ -141,13 +141,13 @@ fn scripted_turns_end_where_they_should() {
     let end = turns.at(99.0);
     assert!(angle_between(end.truth.unwrap(), expected) < 1e-9);
     assert!(close(end.force, gravity_in_body(expected), 1e-9));
-    assert!(drift(&mut turns, 5.0) < 0.001);
+    assert!(drift(&turns, 5.0) < 0.001);
 }
 
 #[test]
 fn a_motion_can_begin_later() {
     let script = || Box::new(Turns::new(0.0, 0.0).turn([0.0, 0.0, 1.0], 45.0, 2.0));
-    let mut later = motion::skip(script(), 0.5).unwrap();
+    let later = motion::skip(script(), 0.5).unwrap();
     assert_eq!(later.at(0.25), script().at(0.75));
     assert_eq!(later.duration(), Some(1.5));
     for start in [2.0, 1e300, -1.0, f64::NAN, f64::INFINITY] {
@@ -186,7 +186,7 @@ fn a_recording_is_resampled_and_then_lies_still() {
         ([100, -200, 300, 100, 0, 900], [0, 0, 0, -32767], 2),
         ([1, 2, 3, 4, 5, 6], LEVEL, 0),
     ]);
-    let mut motion = motion::parse(&bytes).unwrap();
+    let motion = motion::parse(&bytes).unwrap();
     assert_eq!(motion.duration(), Some(0.02));
     let half = motion.at(0.005);
     assert!(close(half.rate, [0.05, -0.1, 0.15], 1e-7));
@@ -206,6 +206,29 @@ fn a_recording_is_resampled_and_then_lies_still() {
     assert_eq!(motion.at(0.021).rate, [0.0; 3]);
     assert!(close(motion.at(1e9).force, [0.04, 0.05, 0.06], 1e-7));
     assert!(motion.describe().contains("3 samples"));
+}
+
+#[test]
+fn the_magnetic_field_is_the_recorded_one_and_else_the_earths() {
+    let mut bytes = recording(&[([0; 6], LEVEL, 2)]);
+    for (place, counts) in bytes[76..82].chunks_exact_mut(2).zip([300_i16, -200, 100]) {
+        place.copy_from_slice(&counts.to_le_bytes());
+    }
+    let recorded = motion::parse(&bytes).unwrap().at(0.0);
+    assert!(close(recorded.magnetic_field(), [30.0, -20.0, 10.0], 1e-5));
+
+    // Level and looking north (−z): 61° below the horizon, ahead. Turned left by 90°: to the right.
+    let north = Head::new().at(0.0).magnetic_field();
+    assert!((length(north) - 48.0).abs() < 1e-9);
+    assert!((north[1].atan2(-north[2]).to_degrees() + 61.0).abs() < 1e-9);
+    let west = Turns::new(0.0, 0.0)
+        .turn([0.0, 1.0, 0.0], 90.0, 1.0)
+        .at(2.0);
+    assert!(close(
+        west.magnetic_field(),
+        [-north[2], north[1], 0.0],
+        1e-9
+    ));
 }
 
 #[test]
@@ -302,7 +325,7 @@ fn text_error(text: &str) -> String {
 fn a_table_is_read_by_its_column_names() {
     let text = "\u{feff}# a nod\r\n\r\naz, AY,ax,gz,gy,gx_dps,t_ms,note,qw,qx,qy,qz\r\n\
                 1,9,3,4,5,180,1000,start,1,0,0,0\r\n3,9,3,4,5,360,1500,end,1,0,0,0 # done\r\n";
-    let mut motion = motion::parse(text.as_bytes()).unwrap();
+    let motion = motion::parse(text.as_bytes()).unwrap();
     assert_eq!(motion.duration(), Some(0.5));
     let instant = motion.at(0.25);
     assert!(close(
@@ -316,7 +339,7 @@ fn a_table_is_read_by_its_column_names() {
 
 #[test]
 fn a_table_without_truth_has_none() {
-    let mut motion = motion::parse(b"t,gx,gy,gz,ax_g,ay_g,az_g\n0,0,0,0,0,1,0\n").unwrap();
+    let motion = motion::parse(b"t,gx,gy,gz,ax_g,ay_g,az_g\n0,0,0,0,0,1,0\n").unwrap();
     assert_eq!(motion.at(0.0).truth, None);
     assert!(close(motion.at(5.0).force, [0.0, 9.80665, 0.0], 1e-12));
 }
@@ -355,7 +378,7 @@ fn the_courses_rows_are_read_in_every_dress() {
         "{1.8e2,0,0,0.37,9.0,2.3},\n{0,0,90,0.37,9.0,2.3},\n",
     ];
     for text in dresses {
-        let mut motion =
+        let motion =
             motion::parse(text.as_bytes()).unwrap_or_else(|error| panic!("{error}: {text}"));
         assert_eq!(motion.duration(), Some(0.002), "{text}");
         assert!(close(
@@ -406,7 +429,7 @@ fn anything_else_is_refused_without_a_panic() {
                 alphabet[(state >> 16) as usize % alphabet.len()]
             })
             .collect();
-        if let Ok(mut motion) = motion::parse(&noise) {
+        if let Ok(motion) = motion::parse(&noise) {
             let instant = motion.at(0.001);
             assert!(
                 instant
@@ -443,7 +466,7 @@ fn recorded_motions_rest_upright_and_turn_as_their_reference() {
         if path.extension().is_none_or(|extension| extension != "imub") {
             continue;
         }
-        let mut motion = motion::open(&path).unwrap();
+        let motion = motion::open(&path).unwrap();
         // Every recording is still for its first half minute.
         let rest: Vec<[f64; 3]> = (0..2500)
             .map(|i| motion.at(f64::from(i) * 0.01))

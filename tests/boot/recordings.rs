@@ -89,7 +89,7 @@ fn follows_recording(name: &str) {
     );
 
     let open = || motion::skip(motion::open(&path).unwrap(), start).unwrap();
-    let mut truth = open();
+    let truth = open();
     let mut run = Run::with(Setup::new(open()));
     run.board.chip().sensor.recording = Some(Vec::new());
     run.seconds(3.0 + MOVEMENT);

@@ -53,7 +53,7 @@ fn turns_about_each_axis_both_ways_and_a_compound_turn_are_found_in_the_stream()
                 turns.turn(axis, degrees, turn)
             })
     };
-    let mut truth = motion();
+    let truth = motion();
     let mut run = Run::moved_by(motion());
     run.seconds(still);
     for (index, (axis, degrees)) in script.into_iter().enumerate() {

@@ -75,6 +75,7 @@ pub fn parse(text: &str) -> Result<Recording, MotionError> {
                 Instant {
                     rate,
                     force: [ax, ay, az],
+                    field: None,
                     truth: None,
                 },
             )

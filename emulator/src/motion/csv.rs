@@ -156,6 +156,7 @@ impl Columns {
             Instant {
                 rate: [gx, gy, gz],
                 force: [ax, ay, az],
+                field: None,
                 truth,
             },
         ))

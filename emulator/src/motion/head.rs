@@ -57,7 +57,7 @@ impl Default for Head {
 }
 
 impl Motion for Head {
-    fn at(&mut self, t: f64) -> Instant {
+    fn at(&self, t: f64) -> Instant {
         let (attitude, rate) = turning(t);
         let mut force = gravity_in_body(attitude);
         let carried = lever_acceleration(t, rate, self.lever_arm);
@@ -67,6 +67,7 @@ impl Motion for Head {
         Instant {
             rate,
             force,
+            field: None,
             truth: Some(attitude),
         }
     }

@@ -16,7 +16,7 @@
 //!
 //! and then N records of 28 bytes: i16 gyroscope x, y, z, accelerometer x, y, z, magnetometer x, y,
 //! z, reference w, x, y, z (body → world, east-north-up, 1/32767), u16 flags (bit 0: scored, bit 1:
-//! reference valid). The magnetometer is not used: the emulated board has no field to feel.
+//! reference valid).
 //!
 //! The body axes are fed to the simulated sensor axis for axis, unchanged: if the recorded sensor
 //! lay with its z axis up, so does the simulated one. Only the reference changes its world frame,
@@ -85,7 +85,7 @@ pub fn parse(bytes: &[u8]) -> Result<Recording, MotionError> {
     let rate = sampling_rate(u32_at(header, 12), u32_at(header, 16))?;
     let gyro_scale = scale(header, 20, "gyroscope scale", "rad/s per count")?;
     let accel_scale = scale(header, 24, "accelerometer scale", "m/s² per count")?;
-    scale(header, 28, "magnetometer scale", "µT per count")?;
+    let mag_scale = scale(header, 28, "magnetometer scale", "µT per count")?;
 
     let (records, _) = records.as_chunks::<RECORD>();
     let samples = records
@@ -99,6 +99,9 @@ pub fn parse(bytes: &[u8]) -> Result<Recording, MotionError> {
                     force: std::array::from_fn(|i| {
                         f64::from(i16_at(record, 6 + 2 * i)) * accel_scale
                     }),
+                    field: Some(std::array::from_fn(|i| {
+                        f64::from(i16_at(record, 12 + 2 * i)) * mag_scale
+                    })),
                     truth: reference(number, record)?,
                 },
             ))

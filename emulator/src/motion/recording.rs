@@ -50,7 +50,7 @@ impl Recording {
 }
 
 impl Motion for Recording {
-    fn at(&mut self, t: f64) -> Instant {
+    fn at(&self, t: f64) -> Instant {
         let after = self.times.partition_point(|&time| time <= t).max(1);
         let earlier = self.instants[after - 1];
         let Some(&later) = self.instants.get(after) else {
@@ -65,6 +65,10 @@ impl Motion for Recording {
         Instant {
             rate: line(earlier.rate, later.rate, fraction),
             force: line(earlier.force, later.force, fraction),
+            field: earlier
+                .field
+                .zip(later.field)
+                .map(|(p, q)| line(p, q, fraction)),
             truth: earlier
                 .truth
                 .zip(later.truth)

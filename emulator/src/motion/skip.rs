@@ -32,7 +32,7 @@ pub fn skip(motion: Box<dyn Motion>, seconds: f64) -> Result<Box<dyn Motion>, Mo
 }
 
 impl Motion for Skipped {
-    fn at(&mut self, t: f64) -> Instant {
+    fn at(&self, t: f64) -> Instant {
         self.motion.at(self.start + t.max(0.0))
     }
 

@@ -14,7 +14,7 @@ use super::{Instant, Motion};
 /// use vrduino_emulator::motion::{Motion, Turns};
 ///
 /// // Two seconds of rest, then a quarter turn to the left in half a second.
-/// let mut turns = Turns::new(2.0, 0.5).turn([0.0, 1.0, 0.0], 90.0, 0.5);
+/// let turns = Turns::new(2.0, 0.5).turn([0.0, 1.0, 0.0], 90.0, 0.5);
 /// let [w, _, y, _] = turns.at(10.0).truth.unwrap();
 /// assert!((w - y).abs() < 1e-12);
 /// ```
@@ -100,7 +100,7 @@ impl Turn {
 }
 
 impl Motion for Turns {
-    fn at(&mut self, t: f64) -> Instant {
+    fn at(&self, t: f64) -> Instant {
         let mut attitude = self.start;
         let mut rate = [0.0; 3];
         for turn in self.turns.iter().take_while(|turn| turn.begin < t) {
@@ -111,6 +111,7 @@ impl Motion for Turns {
         Instant {
             rate,
             force: gravity_in_body(attitude),
+            field: None,
             truth: Some(attitude),
         }
     }
