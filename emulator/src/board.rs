@@ -8,6 +8,8 @@ pub mod setup;
 
 mod shared;
 
+mod snapshot;
+
 use std::sync::{Arc, MutexGuard};
 
 use crate::chip::{Chip, INTERRUPTS, is_steady};
@@ -21,6 +23,7 @@ use measure::{Measure, Moment};
 use polling::Polling;
 pub use setup::Setup;
 use shared::Shared;
+pub use snapshot::Snapshot;
 
 /// Something worth telling, with the time it happened at.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -77,7 +80,11 @@ impl Board {
     /// A board at power-on with `image` in its flash.
     pub fn new(image: Image, setup: Setup) -> Board {
         let configuration = [image.flash[0x40C], image.flash[0x40D]];
-        let sensor = Mpu9250::new(setup.motion, setup.who_am_i, setup.sensor_clock_error);
+        let sensor = Mpu9250::new(
+            Arc::from(setup.motion),
+            setup.who_am_i,
+            setup.sensor_clock_error,
+        );
         let chip = Chip::new(sensor, configuration);
         let ram = chip.ram.clone();
         let core_hz = chip.core_hz();
@@ -119,7 +126,11 @@ impl Board {
     pub fn run(&mut self, span: Ticks) {
         let until = self.now.saturating_add(span);
         while self.now < until && self.stop.is_none() {
-            if self.now >= self.next_event || self.shared.is_touched() {
+            let due = self.now >= self.next_event;
+            if due && let Some(polling) = &mut self.polling {
+                polling.forget();
+            }
+            if due || self.shared.is_touched() {
                 self.service();
             }
             if self.cpu.is_asleep() {

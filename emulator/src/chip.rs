@@ -103,7 +103,7 @@ pub fn is_steady(address: u32) -> bool {
 }
 
 /// Every peripheral, the sensor, and the host.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Chip {
     /// The moment the processor is at.
     pub now: Ticks,
@@ -165,6 +165,14 @@ impl Chip {
         /// Any number will do; a real board's is programmed at PJRC.
         const SERIAL_NUMBER: u32 = 490_000;
         FlashController::new(SERIAL_NUMBER, security, option)
+    }
+
+    /// A copy with a SRAM of its own.
+    pub fn fork(&self) -> Chip {
+        Chip {
+            ram: self.ram.copy(),
+            ..self.clone()
+        }
     }
 
     /// A system reset: peripherals return to their reset state; SRAM, sensor and host live on.

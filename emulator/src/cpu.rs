@@ -11,6 +11,8 @@ mod memory;
 
 pub mod op;
 
+mod state;
+
 pub mod timing;
 
 use std::sync::Arc;
@@ -103,6 +105,8 @@ pub struct Cpu {
     timing: Timing,
     pace: Pace,
     owed: Owed,
+    /// Cycles for which the counters need no look: SysTick cannot expire within them.
+    calm: u64,
     /// SysTick or DWT_CYCCNT counts.
     counting: bool,
     asleep: bool,
@@ -125,6 +129,7 @@ impl Cpu {
             timing: Timing::default(),
             pace,
             owed: Owed::default(),
+            calm: 0,
             counting: false,
             asleep: false,
             faults_seen: 0,
@@ -147,6 +152,7 @@ impl Cpu {
         self.registers = Regs::new();
         self.timing = Timing::default();
         self.owed = Owed::default();
+        self.calm = 0;
         self.counting = false;
         self.asleep = false;
         self.faults_seen = 0;
@@ -181,6 +187,7 @@ impl Cpu {
             self.keep_it_state();
         }
         if private.is_some_and(|access| access.store) {
+            self.calm = 0;
             self.counting = self
                 .core
                 .with_sys(|sys| sys.syst_csr & 1 != 0 || sys.cyccnt_enabled());
@@ -196,7 +203,7 @@ impl Cpu {
             self.timing.of(&op, pc, access, branched, ratio)
         };
         if self.counting {
-            self.owe(self.pace.of(cycles) as i64 - charged as i64);
+            self.owe(self.pace.of(cycles), charged);
         }
         if op.class == Class::Sleep {
             self.asleep = self.core.is_asleep();
@@ -292,25 +299,36 @@ impl Cpu {
         }
     }
 
-    fn owe(&mut self, cycles: i64) {
-        /// How far the counters may be off between two looks at them.
-        const TOLERANCE: i64 = 16;
-        self.owed.cycle_counter += cycles;
-        self.owed.systick += cycles;
-        if self.owed.systick.abs() >= TOLERANCE {
+    /// A step took `cycles`, and the engine has counted `charged`.
+    fn owe(&mut self, cycles: u64, charged: u64) {
+        let owed = cycles as i64 - charged as i64;
+        self.owed.cycle_counter += owed;
+        self.owed.systick += owed;
+        self.calm = self.calm.saturating_sub(cycles.max(charged));
+        if self.calm == 0 {
             self.settle();
         }
     }
 
     /// Lets DWT_CYCCNT and SysTick count what they are owed.
     fn settle(&mut self) {
-        if self.counting {
-            let mut owed = self.owed;
-            self.core.with_sys(|sys| settle(sys, &mut owed));
-            self.owed = owed;
-        } else {
+        /// No instruction takes as long.
+        const STEP: u64 = 128;
+        /// How long nobody has to look at counters that do not expire.
+        const LONG: u64 = 1 << 20;
+        if !self.counting {
             self.owed = Owed::default();
+            return;
         }
+        let mut owed = self.owed;
+        self.calm = self.core.with_sys(|sys| {
+            settle(sys, &mut owed);
+            match sys.syst_csr & 1 {
+                0 => LONG,
+                _ => u64::from(sys.syst_cvr).saturating_sub(STEP),
+            }
+        });
+        self.owed = owed;
     }
 
     /// Whether the core sleeps in WFI or WFE.
@@ -339,12 +357,13 @@ impl Cpu {
         self.core.set_irq(irq, asserted);
     }
 
-    /// Cycles until SysTick would pend its exception; `None` if it never will.
+    /// Cycles until SysTick would pend its exception, 0 if it has; `None` if it never will.
     pub fn cycles_to_systick(&mut self) -> Option<u64> {
         self.settle();
         self.core.with_sys(|sys| {
             let (enabled, interrupt) = (sys.syst_csr & 1 != 0, sys.syst_csr & 2 != 0);
             (enabled && interrupt && sys.syst_rvr != 0).then(|| match sys.syst_cvr {
+                _ if sys.is_pending(Exception::SYSTICK) => 0,
                 0 => u64::from(sys.syst_rvr) + 1,
                 count => u64::from(count),
             })
@@ -352,12 +371,14 @@ impl Cpu {
     }
 
     /// Lets `cycles` pass in sleep: SysTick counts on, DWT_CYCCNT does not (its clock is gated by WFI).
-    pub fn sleep(&self, cycles: u64) {
+    pub fn sleep(&mut self, cycles: u64) {
+        self.calm = 0;
         self.core.with_sys(|sys| count_systick(sys, cycles));
     }
 
     /// Lets `cycles` pass awake: both counters count.
-    pub fn idle(&self, cycles: u64) {
+    pub fn idle(&mut self, cycles: u64) {
+        self.calm = 0;
         self.core.with_sys(|sys| {
             sys.tick_cyccnt(cycles);
             count_systick(sys, cycles);
@@ -420,7 +441,8 @@ fn settle(sys: &mut Sys, owed: &mut Owed) {
         owed.systick = 0;
     } else if owed.systick > 0 {
         count_systick(sys, std::mem::take(&mut owed.systick) as u64);
-    } else {
+    } else if sys.syst_cvr != 0 {
+        // At zero it has expired.
         let room = i64::from(sys.syst_rvr.saturating_sub(sys.syst_cvr));
         let back = room.min(-owed.systick);
         sys.syst_cvr += back as u32;

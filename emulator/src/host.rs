@@ -56,7 +56,7 @@ struct Pipe {
 }
 
 /// The host.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Host {
     cable: Cable,
     plugged: bool,

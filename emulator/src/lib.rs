@@ -34,4 +34,6 @@ pub mod witness;
 
 pub mod random;
 
+pub mod hash;
+
 pub mod time;

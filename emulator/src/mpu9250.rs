@@ -4,6 +4,8 @@
 //! its divider, output registers that hold still during a burst, INT_STATUS. Not yet: low-pass filters, FIFO,
 //! self-test, magnetometer.
 
+use std::sync::Arc;
+
 use crate::motion::{Instant, Motion};
 use crate::peripherals::i2c::Target;
 use crate::time::{self, MILLISECOND, Ticks};
@@ -56,12 +58,13 @@ pub struct Burst {
 }
 
 /// The sensor.
+#[derive(Debug, Clone)]
 pub struct Mpu9250 {
     registers: [u8; 128],
     /// Output registers as the running transfer sees them.
     shadow: [u8; 14],
     who_am_i: u8,
-    motion: Box<dyn Motion>,
+    motion: Arc<dyn Motion>,
     /// Error of the sensor's own oscillator, e.g. 0.01 for 1 % fast.
     clock_error: f64,
     ready_at: Ticks,
@@ -77,18 +80,9 @@ pub struct Mpu9250 {
     burst: Option<(Ticks, Vec<u8>)>,
 }
 
-impl std::fmt::Debug for Mpu9250 {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Mpu9250")
-            .field("samples", &self.samples)
-            .field("faults", &self.faults)
-            .finish()
-    }
-}
-
 impl Mpu9250 {
     /// A sensor that has just been powered, moved by `motion`.
-    pub fn new(motion: Box<dyn Motion>, who_am_i: u8, clock_error: f64) -> Mpu9250 {
+    pub fn new(motion: Arc<dyn Motion>, who_am_i: u8, clock_error: f64) -> Mpu9250 {
         let mut sensor = Mpu9250 {
             registers: [0; 128],
             shadow: [0; 14],

@@ -50,6 +50,8 @@ pub struct Measure {
     pub latencies: [Latency; INTERRUPTS.len()],
     /// The timed function's calls.
     pub calls: Calls,
+    /// What is left of `awake`, in ticks × hertz.
+    rest: Cycles,
     timed: Option<u32>,
     call: Option<Call>,
 }
@@ -73,6 +75,7 @@ impl Measure {
             stack_low: u32::MAX,
             latencies: Default::default(),
             calls: Calls::default(),
+            rest: Cycles::default(),
             timed,
             call: None,
         }
@@ -80,10 +83,15 @@ impl Measure {
 
     /// Takes in `count` equal steps of the processor awake.
     pub(super) fn awake(&mut self, cycles: Cycles, hz: u32) {
-        let ticks = |cycles: u64| cycles * SECOND / u64::from(hz);
+        let hz = u64::from(hz);
+        let ticks = |cycles: u64, rest: &mut u64| {
+            let scaled = cycles * SECOND + *rest;
+            *rest = scaled % hz;
+            scaled / hz
+        };
         self.awake += Cycles {
-            least: ticks(cycles.least),
-            greatest: ticks(cycles.greatest),
+            least: ticks(cycles.least, &mut self.rest.least),
+            greatest: ticks(cycles.greatest, &mut self.rest.greatest),
         };
     }
 

@@ -82,7 +82,7 @@ enum Stage {
 }
 
 /// A request on its way.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Transfer {
     request: Request,
     stage: Stage,

@@ -53,7 +53,7 @@ pub(super) struct Found {
 }
 
 /// An enumeration on its way.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Enumeration {
     step: Step,
     found: Found,

@@ -123,7 +123,8 @@ impl Report {
                 );
             }
         }
-        let calls = &measure.calls;
+        eprintln!("hash    {:016x}", board.state_hash());
+        let calls = &board.measure().calls;
         if calls.count > 0 {
             eprintln!(
                 "timed   {} calls: {} instructions on average, {} at most; {} to {} cycles on average, {} to {} at worst",

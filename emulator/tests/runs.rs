@@ -1,0 +1,10 @@
+//! What can be done with a run: repeat it, stop it, look into it, write it down.
+
+#[path = "runs/tracker.rs"]
+mod tracker;
+
+#[path = "runs/determinism.rs"]
+mod determinism;
+
+#[path = "runs/snapshot.rs"]
+mod snapshot;
