@@ -13,7 +13,7 @@ mod snapshot;
 use std::sync::{Arc, MutexGuard};
 
 use crate::chip::{Chip, INTERRUPTS, is_steady};
-use crate::cpu::{Cpu, Fault, Pace, PeripheralBus, Step};
+use crate::cpu::{Cpu, Fault, Pace, PeripheralBus, RAM_BASE, Step};
 use crate::image::Image;
 use crate::mpu9250::Mpu9250;
 use crate::peripherals::rcm::Cause;
@@ -74,6 +74,8 @@ pub struct Board {
 struct Storm {
     exception: u16,
     entries: u32,
+    /// The handler's first instruction.
+    handler: u32,
 }
 
 impl Board {
@@ -157,12 +159,17 @@ impl Board {
             next_stack: self.cpu.stack_pointer(),
         };
         self.measure.follow(&moment, step.cycles);
-        if moment.next_stack < self.measure.stack_low {
+        if exception == 0 {
+            self.storm.entries = 0;
+        }
+        if moment.next_stack < self.measure.stack_low && moment.next_stack >= RAM_BASE {
             self.lower_stack(moment.next_stack);
         }
         let now_in = self.cpu.exception();
         if now_in != exception {
             self.change_exception(exception, now_in, moment.next_stack < stack);
+        } else if now_in >= 16 && moment.next == self.storm.handler && self.tail_chained() {
+            self.enter(now_in);
         } else {
             self.look_for_polling(&step, until);
         }
@@ -183,29 +190,40 @@ impl Board {
 
     /// The processor has gone from one exception to another; it entered one unless it came back.
     fn change_exception(&mut self, from: u16, to: u16, pushed: bool) {
-        /// So many entries without a single instruction of the program between them are no accident.
-        const STORM: u32 = 20_000;
         if let Some(polling) = &mut self.polling {
             polling.disturb();
         }
         // Tail-chaining pushes nothing, but goes from one interrupt straight to another.
         if to != 0 && (pushed || from != 0) {
-            if let Some(number) = to.checked_sub(16) {
-                self.measure.entered(number, self.now);
-            }
-            if self.storm.exception == to {
-                self.storm.entries += 1;
-            } else {
-                self.storm = Storm {
-                    exception: to,
-                    entries: 1,
-                };
-            }
+            self.enter(to);
         }
-        if self.storm.entries == STORM {
+    }
+
+    /// Whether the processor, back at the first instruction of its handler, has come there by returning from it.
+    fn tail_chained(&self) -> bool {
+        const EXC_RETURN: u32 = 0xFFFF_FFE0;
+        self.cpu.registers().0[14] >= EXC_RETURN && self.pc != self.cpu.pc()
+    }
+
+    fn enter(&mut self, exception: u16) {
+        /// So many entries without a single instruction of the program between them are no accident.
+        const STORM: u32 = 20_000;
+        if let Some(number) = exception.checked_sub(16) {
+            self.measure.entered(number, self.now);
+        }
+        let entries = if self.storm.exception == exception {
+            self.storm.entries + 1
+        } else {
+            1
+        };
+        self.storm = Storm {
+            exception,
+            entries,
+            handler: self.cpu.pc(),
+        };
+        if entries == STORM {
             let what = format!(
-                "exception {} was taken {STORM} times, and the program did not get anywhere between",
-                self.storm.exception
+                "exception {exception} was taken {STORM} times, and the program did not get anywhere between"
             );
             self.judge(vec![Offence {
                 trap: Trap::InterruptStorm,
@@ -347,7 +365,7 @@ impl Board {
         for Offence { trap, what } in offences {
             if self.allowed.contains(&trap) {
                 let what = format!("{trap}: {what}; at {place}");
-                self.events.push(Event { at: self.now, what });
+                self.tell(what);
             } else {
                 self.stop.get_or_insert(Stop {
                     trap,
@@ -372,7 +390,7 @@ impl Board {
         };
         let place = self.place_of(self.pc);
         let what = format!("{by}{why}; the program was at {place}");
-        self.events.push(Event { at: self.now, what });
+        self.tell(what);
         self.resets += 1;
         let mut chip = self.shared.chip();
         chip.reset(cause);
@@ -442,7 +460,15 @@ impl Board {
         self.resets
     }
 
-    /// Takes what happened since the last call.
+    /// Notes an event. A program that is reset again and again would fill the memory before anybody looks.
+    fn tell(&mut self, what: String) {
+        const KEPT: usize = 1_000;
+        if self.events.len() < KEPT {
+            self.events.push(Event { at: self.now, what });
+        }
+    }
+
+    /// Takes what happened since the last call; after a thousand events the rest is left out.
     pub fn take_events(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.events)
     }

@@ -124,6 +124,8 @@ pub struct Chip {
     clocks: ClockGenerator,
     sim: SystemIntegration,
     timer: IntervalTimer,
+    /// When the clock generator's output may next change by itself.
+    clock_change: Ticks,
     reset_control: ResetControl,
     flash: FlashController,
     rest: RegisterFile,
@@ -152,6 +154,7 @@ impl Chip {
             clocks,
             sim: SystemIntegration::new(),
             timer: IntervalTimer::new(),
+            clock_change: 0,
             reset_control: ResetControl::new(Cause::PowerOn),
             flash: Chip::flash(flash_configuration),
             rest: RegisterFile::default(),
@@ -181,6 +184,7 @@ impl Chip {
             self.watchdog_resets = self.watchdog_resets.saturating_add(1);
         }
         self.clocks = ClockGenerator::new();
+        self.clock_change = self.now;
         self.sim = SystemIntegration::new();
         self.watchdog = Watchdog::new(self.now, self.bus_hz(), self.watchdog_resets);
         self.pins.reset();
@@ -232,11 +236,50 @@ impl Chip {
         if let Some(trap) = self.watchdog.expired(now, bus_hz) {
             self.watchdog_bites(trap);
         }
+        if now >= self.clock_change {
+            self.clock_change = self.clocks.next_event(now);
+            self.judge_clocks();
+        }
         self.timer.advance(now, bus_hz);
         self.i2c.advance(now, &self.pins, &mut self.sensor);
         if now >= self.host.next_event() {
             let clocked = self.usb_clocked();
             self.host.advance(now, clocked, &mut self.usb, &self.ram);
+        }
+    }
+
+    /// Tells the witness of clocks that are too fast, or do not fit each other.
+    fn judge_clocks(&mut self) {
+        const CORE_LIMIT: u32 = 72_000_000;
+        const BUS_LIMIT: u32 = 50_000_000;
+        const FLASH_LIMIT: u32 = 25_000_000;
+        self.clock_change = self.clocks.next_event(self.now);
+        let (core, bus, flash) = self.sim.divide(self.clocks.output_hz(self.now));
+        let limits = [
+            (Trap::CoreOverSpeed, "core", core, CORE_LIMIT),
+            (Trap::BusOverSpeed, "bus", bus, BUS_LIMIT),
+            (Trap::FlashOverSpeed, "flash", flash, FLASH_LIMIT),
+        ];
+        for (trap, clock, hz, limit) in limits {
+            if hz > limit {
+                self.witness
+                    .saw(trap, format!("the {clock} clock became {hz} Hz"));
+            }
+        }
+        if !self.sim.ratios_are_whole() {
+            self.witness.saw(
+                Trap::ClockRatio,
+                format!("core, bus and flash clock became {core}, {bus} and {flash} Hz"),
+            );
+        }
+    }
+
+    fn judge_usb_clock(&mut self) {
+        if self.usb.pulled_up() && !self.usb_clocked() {
+            self.witness.saw(
+                Trap::UsbClock,
+                "the device was attached to the bus while its clock is not 48 MHz",
+            );
         }
     }
 
@@ -302,7 +345,7 @@ impl Chip {
             page @ 0x49..=0x4D => self.pins.read_port(page as usize - 0x49, offset),
             0x52 => self.watchdog.read(offset, now, bus_hz),
             0x64 => self.clocks.read(offset, now),
-            0x66 => self.i2c.read(offset, now, bus_hz),
+            0x66 => self.i2c.read(offset, now, bus_hz, &mut self.witness),
             0x72 => self.usb.read(offset),
             0x7F => self.reset_control.read(offset),
             0xFF => self.pins.read_gpio(offset),
@@ -319,7 +362,10 @@ impl Chip {
         match slot.page {
             0x20 => self.flash.write(offset, byte),
             0x37 => self.timer.write(offset, value, now, bus_hz),
-            0x47 | 0x48 => self.sim.write(address - 0x4004_7000, value),
+            0x47 | 0x48 => {
+                self.sim.write(address - 0x4004_7000, value);
+                self.judge_clocks();
+            }
             page @ 0x49..=0x4D => self.pins.write_port(page as usize - 0x49, offset, value),
             0x52 => match self.watchdog.write(offset, value as u16, now, bus_hz) {
                 Ok(()) => {}
@@ -329,9 +375,18 @@ impl Chip {
                 ),
                 Err(trap) => self.watchdog_bites(trap),
             },
-            0x64 => self.clocks.write(offset, byte, now),
-            0x66 => self.i2c.write(offset, byte, now, bus_hz, &self.pins),
-            0x72 => self.usb.write(offset, byte),
+            0x64 => {
+                self.clocks.write(offset, byte, now, &mut self.witness);
+                self.judge_clocks();
+            }
+            0x66 => {
+                self.i2c
+                    .write(offset, byte, (now, bus_hz), &self.pins, &mut self.witness);
+            }
+            0x72 => {
+                self.usb.write(offset, byte);
+                self.judge_usb_clock();
+            }
             0xFF => self.pins.write_gpio(offset, value),
             _ => self.rest.write(address, width, value),
         }

@@ -34,9 +34,6 @@ pub const RAM_BASE: u32 = 0x1FFF_8000;
 /// Bytes of SRAM.
 pub const RAM_SIZE: u32 = 64 * 1024;
 
-/// Where SRAM_L ends and SRAM_U begins.
-const RAM_MIDDLE: u32 = 0x2000_0000;
-
 /// Bytes of program flash, from address 0.
 pub const FLASH_SIZE: u32 = 256 * 1024;
 
@@ -209,16 +206,9 @@ impl Cpu {
             self.asleep = self.core.is_asleep();
         }
         if let Some(access) = access
-            && access.address.wrapping_add(u32::from(access.bytes)) > RAM_MIDDLE
-            && (RAM_BASE..RAM_MIDDLE).contains(&access.address)
+            && self.fault.is_none()
         {
-            self.fault = Some(Fault {
-                trap: Trap::SramBoundary,
-                what: format!(
-                    "an access of {} bytes at {:#010x}",
-                    access.bytes, access.address
-                ),
-            });
+            self.fault = fault::of_access(access);
         }
         Step { cycles, access }
     }

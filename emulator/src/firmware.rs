@@ -10,9 +10,23 @@ use std::process::{Command, ExitStatus, Stdio};
 /// The chip's target: a Cortex-M4 without floating-point unit.
 pub const TARGET: &str = "thumbv7em-none-eabi";
 
-const PACKAGE: &str = "vrduino";
-const PROGRAM: &str = "firmware";
 const PROFILE: &str = "image";
+
+/// A package of the workspace whose programs run on the chip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Package {
+    /// Its name.
+    pub name: &'static str,
+    /// The feature without which its programs are not built.
+    pub feature: &'static str,
+}
+
+/// The tracker.
+const TRACKER: Package = Package {
+    name: "vrduino",
+    feature: "firmware",
+};
+const TRACKER_PROGRAM: &str = "firmware";
 
 /// Variables that would make another image than the repository describes: flags from the
 /// environment take the place of the configured ones. A profile's settings are removed as well.
@@ -40,6 +54,20 @@ pub struct BuildOptions {
 ///
 /// [`BuildError`]: the sources have moved, a tool is missing, or the firmware does not build.
 pub fn build(options: BuildOptions) -> Result<PathBuf, BuildError> {
+    let image = build_package(TRACKER, options)?.join(TRACKER_PROGRAM);
+    if image.is_file() {
+        Ok(image)
+    } else {
+        Err(BuildError::NoImage { path: image })
+    }
+}
+
+/// Builds all programs of `package` and returns the folder of their ELF files.
+///
+/// # Errors
+///
+/// As for [`build`].
+pub fn build_package(package: Package, options: BuildOptions) -> Result<PathBuf, BuildError> {
     let root = workspace_root()?;
     provide_target(&root)?;
     let target_dir = target_dir()?;
@@ -50,11 +78,10 @@ pub fn build(options: BuildOptions) -> Result<PathBuf, BuildError> {
         .args([
             "build",
             "--package",
-            PACKAGE,
-            "--bin",
-            PROGRAM,
+            package.name,
+            "--bins",
             "--features",
-            "firmware",
+            package.feature,
         ])
         .args(["--target", TARGET, "--profile", PROFILE, "--target-dir"])
         .arg(&target_dir)
@@ -79,12 +106,7 @@ pub fn build(options: BuildOptions) -> Result<PathBuf, BuildError> {
     if !status.success() {
         return Err(BuildError::Build { status });
     }
-    let image = target_dir.join(TARGET).join(PROFILE).join(PROGRAM);
-    if image.is_file() {
-        Ok(image)
-    } else {
-        Err(BuildError::NoImage { path: image })
-    }
+    Ok(target_dir.join(TARGET).join(PROFILE))
 }
 
 /// The workspace's root, where this crate was built from.

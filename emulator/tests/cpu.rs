@@ -51,7 +51,7 @@ fn an_interrupt_in_an_it_block_leaves_the_rest_of_the_block_conditional() {
         0xE7FE, // b .
     ];
     for steps_before in 3..12 {
-        let cpu = processor(&code);
+        let mut cpu = processor(&code);
         cpu.enable_irq(IRQ);
         for step in 0..30 {
             cpu.set_irq(IRQ, step == steps_before);

@@ -1,9 +1,14 @@
-//! What a processor fault was, from the fault status registers (ARMv7-M, B3.2.15 to B3.2.18).
+//! What a processor fault was, from the fault status registers (ARMv7-M, B3.2.15 to B3.2.18), and accesses that the
+//! engine forgives.
 
 use super::op::Access;
 use super::{FLASH_SIZE, Fault, RAM_BASE};
 use crate::witness::Trap;
 
+/// Where SRAM_L ends and SRAM_U begins.
+const RAM_MIDDLE: u32 = 0x2000_0000;
+/// Registers: Device memory.
+const PERIPHERALS: std::ops::Range<u32> = 0x4000_0000..0x6000_0000;
 const HFSR_DEBUGEVT: u32 = 1 << 31;
 const IACCVIOL: u32 = 1 << 0;
 const STACKING: u32 = 1 << 3 | 1 << 4 | 1 << 11 | 1 << 12;
@@ -21,6 +26,27 @@ fn is_memory(address: u32) -> bool {
     address < FLASH_SIZE
         || (0x1400_0000..0x1400_0800).contains(&address)
         || (RAM_BASE..0x2000_8000).contains(&address)
+}
+
+/// The engine takes unaligned accesses apart into bytes; these would not work on silicon.
+pub(super) fn of_access(access: Access) -> Option<Fault> {
+    let Access { address, bytes, .. } = access;
+    if address.is_multiple_of(u32::from(bytes)) {
+        return None;
+    }
+    if PERIPHERALS.contains(&address) {
+        let what = format!("an access of {bytes} bytes at {address:#010x}, a register");
+        return Some(Fault {
+            trap: Trap::UnalignedAccess,
+            what,
+        });
+    }
+    let crosses = (RAM_BASE..RAM_MIDDLE).contains(&address)
+        && address.wrapping_add(u32::from(bytes)) > RAM_MIDDLE;
+    crosses.then(|| Fault {
+        trap: Trap::SramBoundary,
+        what: format!("an access of {bytes} bytes at {address:#010x}"),
+    })
 }
 
 /// Names the fault that the instruction at `pc` caused; `cfsr` holds the status bits it has set.
@@ -87,6 +113,11 @@ pub(super) fn name(
                 format!("{verb} {bfar:#010x}, where no memory is"),
             )
         }
+    } else if cfsr == 0 {
+        (
+            Trap::SvcEscalated,
+            "an SVC was executed where its handler cannot run".into(),
+        )
     } else {
         (
             Trap::UndefinedInstruction,

@@ -1,8 +1,9 @@
 //! Inter-integrated circuit module as a master (K20 manual, chapter 46): every byte takes its nine bit times, and the
 //! flags rise only then.
 
-use super::pins::Pins;
+use super::pins::{Pins, Wiring};
 use crate::time::{self, NEVER, Ticks};
+use crate::witness::{Trap, Witness};
 
 const F: u32 = 1;
 const C1: u32 = 2;
@@ -60,7 +61,12 @@ pub struct I2c {
     /// A START or repeated START was sent, so the next byte is an address.
     addressing: bool,
     running: Option<(Transfer, Ticks)>,
+    /// The last byte read was acknowledged, so the target goes on sending.
+    more_promised: bool,
 }
+
+/// The fastest that the MPU-9250's registers can be accessed.
+const FASTEST_HZ: u64 = 400_000;
 
 impl I2c {
     /// The state after reset.
@@ -119,22 +125,28 @@ impl I2c {
             Transfer::Write(byte) => connected && target.write(byte, now),
             Transfer::Read => {
                 self.data = if connected { target.read(now) } else { 0xFF };
-                self.control() & TXAK == 0
+                self.more_promised = self.control() & TXAK == 0;
+                self.more_promised
             }
         };
         self.status = self.status & !RXAK | TCF | IICIF | u8::from(!acknowledged);
     }
 
     /// Reads an 8-bit register. Reading D while receiving starts the next byte.
-    pub fn read(&mut self, offset: u32, now: Ticks, bus_hz: u32) -> u32 {
+    pub fn read(&mut self, offset: u32, now: Ticks, bus_hz: u32, witness: &mut Witness) -> u32 {
         match offset {
             S => u32::from(self.status),
             C1 => u32::from(self.control() & !RSTA),
             D => {
                 let value = self.data;
                 let receiving = self.control() & (IICEN | MST | TX) == IICEN | MST;
-                if receiving && self.running.is_none() {
-                    self.begin(Transfer::Read, now + self.bits(9, bus_hz));
+                match self.running {
+                    Some((Transfer::Read, _)) => witness.saw(
+                        Trap::I2cDataEarly,
+                        "D was read while its byte was still on its way",
+                    ),
+                    None if receiving => self.begin(Transfer::Read, now + self.bits(9, bus_hz)),
+                    _ => {}
                 }
                 u32::from(value)
             }
@@ -144,32 +156,23 @@ impl I2c {
 
     fn begin(&mut self, transfer: Transfer, until: Ticks) {
         self.status &= !TCF;
+        self.more_promised = false;
         self.running = Some((transfer, until));
     }
 
     /// Writes an 8-bit register.
-    pub fn write(&mut self, offset: u32, value: u8, now: Ticks, bus_hz: u32, pins: &Pins) {
+    pub fn write(
+        &mut self,
+        offset: u32,
+        value: u8,
+        (now, bus_hz): (Ticks, u32),
+        pins: &Pins,
+        witness: &mut Witness,
+    ) {
         match offset {
-            C1 => self.write_control(value, now, bus_hz, pins),
+            C1 => self.write_control(value, (now, bus_hz), pins, witness),
             S => self.status &= !(value & (IICIF | ARBL)),
-            D => {
-                let sending = self.control() & (IICEN | MST | TX) == IICEN | MST | TX;
-                if sending
-                    && self
-                        .running
-                        .is_none_or(|(transfer, _)| transfer == Transfer::Stop)
-                {
-                    let transfer = if self.addressing {
-                        Transfer::Address(value)
-                    } else {
-                        Transfer::Write(value)
-                    };
-                    // A START takes about one more bit time before the first clock.
-                    let bits = if self.addressing { 10 } else { 9 };
-                    self.addressing = false;
-                    self.begin(transfer, now + self.bits(bits, bus_hz));
-                }
-            }
+            D => self.write_data(value, (now, bus_hz), witness),
             _ => {
                 if let Some(register) = self.registers.get_mut(offset as usize) {
                     *register = value;
@@ -178,31 +181,117 @@ impl I2c {
         }
     }
 
-    fn write_control(&mut self, value: u8, now: Ticks, bus_hz: u32, pins: &Pins) {
+    fn write_data(&mut self, value: u8, (now, bus_hz): (Ticks, u32), witness: &mut Witness) {
+        let control = self.control();
+        // After lost arbitration the module is no master any more; that is for software to find in S.
+        if control & IICEN != 0 && control & MST == 0 && self.status & ARBL == 0 {
+            witness.saw(
+                Trap::I2cNotMaster,
+                format!("{value:#04x} was written to D without a START before it"),
+            );
+        }
+        if control & (IICEN | MST | TX) != IICEN | MST | TX {
+            return;
+        }
+        if let Some((transfer, _)) = self.running
+            && transfer != Transfer::Stop
+        {
+            witness.saw(
+                Trap::I2cDataOverwritten,
+                format!("{value:#04x} was written to D while a byte was still on its way"),
+            );
+            return;
+        }
+        let transfer = if self.addressing {
+            Transfer::Address(value)
+        } else {
+            Transfer::Write(value)
+        };
+        // A START takes about one more bit time before the first clock.
+        let bits = if self.addressing { 10 } else { 9 };
+        self.addressing = false;
+        self.begin(transfer, now + self.bits(bits, bus_hz));
+    }
+
+    fn write_control(
+        &mut self,
+        value: u8,
+        (now, bus_hz): (Ticks, u32),
+        pins: &Pins,
+        witness: &mut Witness,
+    ) {
         let before = self.control();
         self.registers[C1 as usize] = value & !RSTA;
         if value & IICEN == 0 {
             // A disabled module lets go of the bus and forgets what it was doing.
             self.running = None;
             self.addressing = false;
+            self.more_promised = false;
             self.status = self.status & IICIF | TCF;
             return;
         }
         let (was_master, is_master) = (before & MST != 0, value & MST != 0);
         if is_master && !was_master {
-            if pins.sda() && pins.scl() {
-                self.addressing = true;
-                self.status |= BUSY;
-            } else {
-                // The bus is held by somebody else: arbitration is lost at once (46.4.1.6).
-                self.status |= ARBL | IICIF;
-                self.registers[C1 as usize] &= !MST;
-            }
+            self.start(bus_hz, pins, witness);
         } else if was_master && !is_master {
+            self.end_of_reading("STOP", witness);
             self.running = Some((Transfer::Stop, now + self.bits(1, bus_hz)));
             self.addressing = false;
         } else if is_master && value & RSTA != 0 {
+            if self.registers[F as usize] >> 6 != 0 {
+                witness.saw(
+                    Trap::I2cRepeatedStartMultiplier,
+                    "a repeated START with a multiplier in I2C0_F",
+                );
+            }
+            self.end_of_reading("repeated START", witness);
             self.addressing = true;
+        } else if value & RSTA != 0 {
+            witness.saw(
+                Trap::I2cNotMaster,
+                "a repeated START without a START before it",
+            );
+        }
+    }
+
+    fn start(&mut self, bus_hz: u32, pins: &Pins, witness: &mut Witness) {
+        match pins.i2c_wiring() {
+            Ok(()) => {}
+            Err(Wiring::NotMuxed) => witness.saw(
+                Trap::I2cPinMux,
+                "a START while no pair of pins is connected to I2C0",
+            ),
+            Err(Wiring::NoPullUp) => {
+                witness.saw(Trap::I2cNoPullUp, "a START on pins that nothing pulls up")
+            }
+        }
+        let clock = time::SECOND / self.bits(1, bus_hz).max(1);
+        if clock > FASTEST_HZ {
+            witness.saw(Trap::I2cTooFast, format!("a START with SCL at {clock} Hz"));
+        }
+        if self.status & BUSY != 0 {
+            witness.saw(
+                Trap::I2cStartWhileBusy,
+                "a START before the bus was free: S[BUSY] is 1",
+            );
+        }
+        if self.status & BUSY == 0 && pins.sda() && pins.scl() {
+            self.addressing = true;
+            self.status |= BUSY;
+        } else {
+            // The bus is held by somebody else: arbitration is lost at once (46.4.1.6).
+            self.status |= ARBL | IICIF;
+            self.registers[C1 as usize] &= !MST;
+        }
+    }
+
+    /// A master receiver ends its transfer.
+    fn end_of_reading(&mut self, how: &str, witness: &mut Witness) {
+        if std::mem::take(&mut self.more_promised) {
+            witness.saw(
+                Trap::I2cStopAfterAck,
+                format!("{how} after a byte that was acknowledged: TXAK was not set in time"),
+            );
         }
     }
 }

@@ -1,12 +1,19 @@
 //! Ports and GPIO (K20 manual, chapters 11 and 49), and the two wires of the sensor bus with their pull-ups.
+//!
+//! I2C0 reaches two pairs of port B's pins: PTB2 and PTB3, to which the board's sensor and its pull-ups are soldered,
+//! and PTB0 and PTB1, to which nothing is.
 
 const PORT_B: usize = 1;
 /// SCL is PTB2, pin 19 of the board.
 const SCL: u32 = 2;
 /// SDA is PTB3, pin 18 of the board.
 const SDA: u32 = 3;
+/// The other pair: SCL is PTB0, pin 16 of the board, and SDA is PTB1, pin 17.
+const OTHER: [u32; 2] = [0, 1];
 const MUX_GPIO: u32 = 1;
 const MUX_I2C: u32 = 2;
+/// PORTx_PCRn: pull enabled, and upwards.
+const PULL_UP: u32 = 0b11;
 
 #[derive(Debug, Clone, Default)]
 struct Port {
@@ -23,6 +30,17 @@ pub struct Pins {
     pub sda_held_for: u32,
     /// Something holds SCL low, whatever anybody does.
     pub scl_held: bool,
+    /// The board's pull-ups on SCL and SDA are missing.
+    pub no_pull_ups: bool,
+}
+
+/// What is wrong with the pins of the sensor bus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wiring {
+    /// No pair of pins is connected to I2C0.
+    NotMuxed,
+    /// Nothing pulls up the pins that are.
+    NoPullUp,
 }
 
 impl Pins {
@@ -40,19 +58,44 @@ impl Pins {
         self.mux(SCL) == MUX_I2C && self.mux(SDA) == MUX_I2C
     }
 
+    /// What a START would find wrong with the pins of I2C0.
+    pub fn i2c_wiring(&self) -> Result<(), Wiring> {
+        let control = |bit: u32| self.ports[PORT_B].control[bit as usize];
+        let pulled = |bit: u32| control(bit) & PULL_UP == PULL_UP;
+        if self.i2c_connected() {
+            let pulled_up = !self.no_pull_ups || [SCL, SDA].into_iter().all(pulled);
+            return if pulled_up {
+                Ok(())
+            } else {
+                Err(Wiring::NoPullUp)
+            };
+        }
+        if OTHER.into_iter().any(|bit| self.mux(bit) != MUX_I2C) {
+            Err(Wiring::NotMuxed)
+        } else if OTHER.into_iter().all(pulled) {
+            Ok(())
+        } else {
+            Err(Wiring::NoPullUp)
+        }
+    }
+
     fn driven_low(&self, bit: u32) -> bool {
         let port = &self.ports[PORT_B];
         self.mux(bit) == MUX_GPIO && port.direction >> bit & 1 != 0 && port.output >> bit & 1 == 0
     }
 
+    fn pulled_up(&self, bit: u32) -> bool {
+        !self.no_pull_ups || self.ports[PORT_B].control[bit as usize] & PULL_UP == PULL_UP
+    }
+
     /// Level of the data line: pulled up unless somebody holds it low.
     pub fn sda(&self) -> bool {
-        !self.driven_low(SDA) && self.sda_held_for == 0
+        !self.driven_low(SDA) && self.sda_held_for == 0 && self.pulled_up(SDA)
     }
 
     /// Level of the clock line.
     pub fn scl(&self) -> bool {
-        !self.driven_low(SCL) && !self.scl_held
+        !self.driven_low(SCL) && !self.scl_held && self.pulled_up(SCL)
     }
 
     /// Reads a pin control register of port `index`.

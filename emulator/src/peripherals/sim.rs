@@ -53,6 +53,15 @@ impl SystemIntegration {
         (divided(28), divided(24), divided(16))
     }
 
+    /// Whether bus and flash clock are whole divisions of the core clock, the flash clock by 8 at most and not above the
+    /// bus clock (K20 manual, clock definitions).
+    pub fn ratios_are_whole(&self) -> bool {
+        let dividers = self.register(CLKDIV1);
+        let divider = |shift: u32| (dividers >> shift & 0xF) + 1;
+        let (core, bus, flash) = (divider(28), divider(24), divider(16));
+        bus.is_multiple_of(core) && flash.is_multiple_of(core) && flash >= bus && flash / core <= 8
+    }
+
     /// The USB clock made from the PLL, if SOPT2 selects the PLL for it.
     pub fn usb_hz(&self, pll_hz: Option<u32>) -> Option<u32> {
         let options = self.register(SOPT2);

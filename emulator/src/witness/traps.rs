@@ -84,7 +84,7 @@ traps! {
         "the flash clock is 25 MHz at most (K20 data sheet, device clock specifications); set OUTDIV4 before the faster clock"
     /// Clocks that do not divide each other.
     ClockRatio "clock-ratio"
-        "the core clock has to be a whole multiple of the bus clock, and the bus clock of the flash clock, 8 at most (K20 manual 5.5, clock definitions)"
+        "bus and flash clock have to be whole divisions of the core clock; the flash clock no faster than the bus clock and no slower than an eighth of the core clock (K20 manual, clock definitions)"
     /// The USB module runs from something else than 48 MHz.
     UsbClock "usb-clock"
         "the USB module needs 48 MHz from the PLL or FLL through SIM_CLKDIV2 (K20 manual, USB FS OTG controller clocking)"
@@ -124,10 +124,13 @@ traps! {
         "the processor has Thumb state only: targets of BX and vectors need bit 0 set (ARMv7-M, B1.5.14)"
     /// An unaligned access where none is possible.
     UnalignedAccess "unaligned-access"
-        "LDM, STM, LDRD, STRD, exclusive and peripheral accesses have to be aligned (ARMv7-M, A3.2.1)"
+        "LDM, STM, LDRD, STRD, exclusive and peripheral accesses have to be aligned (ARMv7-M, A3.2.1 and A3.5.7)"
     /// A division by zero with CCR.DIV_0_TRP set.
     DivideByZero "divide-by-zero"
         "with CCR.DIV_0_TRP set a division by zero is a UsageFault (ARMv7-M, B3.2.8)"
+    /// A supervisor call that cannot be taken.
+    SvcEscalated "svc-escalated"
+        "an SVC with interrupts masked, or from a handler as urgent as its own, is a HardFault (ARMv7-M, B1.5.4)"
     /// A breakpoint without a debugger.
     Breakpoint "breakpoint"
         "without a debugger BKPT is a HardFault (ARMv7-M, C1.5)"
@@ -198,9 +201,6 @@ traps! {
     /// The bus runs faster than a device on it can.
     I2cTooFast "i2c-too-fast"
         "the MPU-9250's registers are accessed at 400 kHz at most (product specification, I2C timing)"
-    /// The interrupt flag was left standing.
-    I2cFlagStanding "i2c-flag-standing"
-        "IICIF has to be cleared by writing 1 before the next byte, else its end is not seen (K20 manual, I2Cx_S)"
 
     // USB.
     /// The buffer descriptor table is not where the controller can find it.

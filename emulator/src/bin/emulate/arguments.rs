@@ -79,7 +79,7 @@ pub struct Arguments {
 
 const FAULT_HELP: &str = "Break something, from S on (else from the start) and until T (else for good): absent (no sensor \
                           answers), frozen (no new samples), brown-out (the sensor loses its settings), stuck-sda (held \
-                          until it is clocked free), stuck-scl, unread (nobody reads the port), unplugged; may be given \
+                          until it is clocked free), stuck-scl, no-pull-ups, unread (nobody reads the port), unplugged; may be given \
                           more than once";
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -143,6 +143,7 @@ enum Kind {
     BrownOut,
     StuckSda,
     StuckScl,
+    NoPullUps,
     Unread,
     Unplugged,
 }
@@ -174,7 +175,7 @@ impl FromStr for Fault {
         }
         Ok(Fault {
             kind: Kind::from_str(kind, true)
-                .map_err(|_| "give one of absent, frozen, brown-out, stuck-sda, stuck-scl, unread, unplugged")?,
+                .map_err(|_| "give one of absent, frozen, brown-out, stuck-sda, stuck-scl, no-pull-ups, unread, unplugged")?,
             from: time::ticks(from),
             until: until.map_or(Ticks::MAX, time::ticks),
         })
@@ -234,6 +235,7 @@ impl Script {
                 Kind::BrownOut => {}
                 Kind::StuckSda => chip.pins.sda_held_for = if due { 5 } else { 0 },
                 Kind::StuckScl => chip.pins.scl_held = due,
+                Kind::NoPullUps => chip.pins.no_pull_ups = due,
                 Kind::Unread => chip.host.set_reading(!due),
                 Kind::Unplugged => chip.host.set_plugged(!due),
             }

@@ -1,0 +1,13 @@
+//! Runs the flash at half the core's 72 MHz.
+
+#![no_std]
+#![no_main]
+
+use wrong_images::{chip::*, registers::*};
+
+wrong_images::image!({
+    write(SIM_CLKDIV1, 0x0111_0000u32);
+    use_crystal();
+    start_pll(6, 27);
+    use_pll();
+});

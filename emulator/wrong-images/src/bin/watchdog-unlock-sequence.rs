@@ -1,0 +1,8 @@
+//! Writes the second unlock word alone.
+
+#![no_std]
+#![no_main]
+
+use wrong_images::{chip::*, registers::*};
+
+wrong_images::image!(reset: write(WDOG_UNLOCK, 0xD928u16), main: ());
