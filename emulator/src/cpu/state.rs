@@ -7,8 +7,9 @@ use rsemu::core::space::MemAttrs;
 use rsemu::core::state::{ChunkReader, MachineShape, StateReader, StateWriter};
 use rsemu::cpu::arm::v7m::ArmV7m;
 
+use super::counters::settle;
 use super::memory::{self, FLEXRAM_BASE, FLEXRAM_SIZE};
-use super::{Cpu, FLASH_SIZE, PeripheralBus, RAM_BASE, RAM_SIZE, Ram, settle};
+use super::{Cpu, FLASH_SIZE, PeripheralBus, RAM_BASE, RAM_SIZE, Ram};
 use crate::hash::Fnv1a;
 
 /// Where the engine's saved state counts cycles of its own, which influence nothing: behind sixteen registers, the
