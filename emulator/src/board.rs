@@ -10,11 +10,14 @@ mod shared;
 
 mod snapshot;
 
+pub mod watch;
+
 use std::sync::{Arc, MutexGuard};
 
 use crate::chip::{Chip, INTERRUPTS, is_steady};
 use crate::cpu::{Cpu, Fault, Pace, PeripheralBus, RAM_BASE, Step};
 use crate::image::Image;
+use crate::journal::Happening;
 use crate::mpu9250::Mpu9250;
 use crate::peripherals::rcm::Cause;
 use crate::time::{self, SECOND, Ticks};
@@ -24,6 +27,7 @@ use polling::Polling;
 pub use setup::Setup;
 use shared::Shared;
 pub use snapshot::Snapshot;
+use watch::Watch;
 
 /// Something worth telling, with the time it happened at.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -65,6 +69,7 @@ pub struct Board {
     measure: Measure,
     storm: Storm,
     polling: Option<Polling>,
+    watch: Watch,
     /// Where the image's variables end: below this the stack must not grow.
     stack_limit: u32,
 }
@@ -119,6 +124,7 @@ impl Board {
             measure: Measure::new(timed),
             storm: Storm::default(),
             polling: setup.skip_polling.then(Polling::default),
+            watch: Watch::default(),
             stack_limit,
         }
     }
@@ -135,10 +141,14 @@ impl Board {
             if due || self.shared.is_touched() {
                 self.service();
             }
+            let before = self.watch.is_on().then(|| self.watched());
             if self.cpu.is_asleep() {
                 self.sleep(until);
             } else {
                 self.step(until);
+            }
+            if let Some(before) = before {
+                self.tell_changes(before);
             }
         }
     }
@@ -167,7 +177,7 @@ impl Board {
         }
         let now_in = self.cpu.exception();
         if now_in != exception {
-            self.change_exception(exception, now_in, moment.next_stack < stack);
+            self.change_exception(now_in, moment.next_stack > stack);
         } else if now_in >= 16 && moment.next == self.storm.handler && self.tail_chained() {
             self.enter(now_in);
         } else {
@@ -188,13 +198,12 @@ impl Board {
         }
     }
 
-    /// The processor has gone from one exception to another; it entered one unless it came back.
-    fn change_exception(&mut self, from: u16, to: u16, pushed: bool) {
+    /// The processor has gone to another exception; a return, which has popped a frame, may lead to one as well.
+    fn change_exception(&mut self, to: u16, popped: bool) {
         if let Some(polling) = &mut self.polling {
             polling.disturb();
         }
-        // Tail-chaining pushes nothing, but goes from one interrupt straight to another.
-        if to != 0 && (pushed || from != 0) {
+        if to != 0 && !popped {
             self.enter(to);
         }
     }
@@ -299,7 +308,7 @@ impl Board {
         if !self.cpu.is_asleep() {
             let now_in = self.cpu.exception();
             if now_in != exception {
-                self.change_exception(exception, now_in, true);
+                self.change_exception(now_in, false);
             }
             return;
         }
@@ -398,6 +407,7 @@ impl Board {
         self.flash_ratio = chip.flash_ratio();
         drop(chip);
         self.cpu.reset();
+        self.tell_watchers(Some(Happening::Reset));
         self.remainder = 0;
         self.next_event = self.now;
         self.asserted = [false; INTERRUPTS.len()];

@@ -3,6 +3,7 @@
 
 use crate::cpu::Ram;
 use crate::host::Host;
+use crate::journal::{Happening, Journal};
 use crate::mpu9250::Mpu9250;
 use crate::peripherals::ftfl::FlashController;
 use crate::peripherals::i2c::I2c;
@@ -83,6 +84,26 @@ pub const INTERRUPTS: [u16; 6] = [
     irq::USBOTG,
 ];
 
+/// The name of the peripheral at `address`, as the manual has it.
+pub fn peripheral_at(address: u32) -> Option<&'static str> {
+    let page = (address >> 12).checked_sub(0x4_0000)?;
+    let slot = SLOTS.iter().find(|slot| slot.page == page)?;
+    Some(slot.name)
+}
+
+/// Who asks for interrupt `number`, of those that the modelled peripherals can raise.
+pub fn interrupt_name(number: u16) -> Option<&'static str> {
+    Some(match number {
+        irq::I2C0 => "I2C0",
+        irq::PIT0 => "PIT0",
+        irq::USBOTG => "USBOTG",
+        _ if number == irq::PIT0 + 1 => "PIT1",
+        _ if number == irq::PIT0 + 2 => "PIT2",
+        _ if number == irq::PIT0 + 3 => "PIT3",
+        _ => return None,
+    })
+}
+
 /// Whether reading `address` changes nothing, and finds the same until the next event or access.
 pub fn is_steady(address: u32) -> bool {
     const I2C0_C1: u32 = 0x4006_6002;
@@ -134,6 +155,8 @@ pub struct Chip {
     pub reset_wanted: Option<(Cause, &'static str)>,
     /// What the program did that silicon does not forgive.
     pub witness: Witness,
+    /// What happens, for those who watch.
+    pub journal: Journal,
 }
 
 impl Chip {
@@ -161,6 +184,7 @@ impl Chip {
             flash_configuration,
             reset_wanted: None,
             witness: Witness::default(),
+            journal: Journal::default(),
         }
     }
 
@@ -241,10 +265,15 @@ impl Chip {
             self.judge_clocks();
         }
         self.timer.advance(now, bus_hz);
-        self.i2c.advance(now, &self.pins, &mut self.sensor);
+        let journal = &mut self.journal;
+        self.i2c
+            .advance((now, bus_hz), &self.pins, &mut self.sensor, journal);
         if now >= self.host.next_event() {
             let clocked = self.usb_clocked();
             self.host.advance(now, clocked, &mut self.usb, &self.ram);
+            for (_, happening) in self.usb.journal.take() {
+                self.journal.note(now, || happening);
+            }
         }
     }
 
@@ -391,6 +420,23 @@ impl Chip {
             _ => self.rest.write(address, width, value),
         }
         true
+    }
+
+    /// Notes an access by the processor, and what it did to the sensor bus's wires.
+    pub fn note_access(&mut self, address: u32, width: u8, value: Option<u32>, store: bool) {
+        const PORT_B: u32 = 0x4004_A000;
+        const GPIO: u32 = 0x400F_F000;
+        self.journal.note(self.now, || Happening::Register {
+            address,
+            width,
+            value,
+            store,
+        });
+        if store && [PORT_B, GPIO].contains(&(address & !0xFFF)) {
+            let (scl, sda) = (self.pins.scl(), self.pins.sda());
+            self.journal
+                .note(self.now, || Happening::Wires { scl, sda });
+        }
     }
 
     /// The moment, in seconds since power-on.

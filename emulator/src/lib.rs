@@ -36,4 +36,10 @@ pub mod random;
 
 pub mod hash;
 
+pub mod journal;
+
+pub mod trace;
+
+pub mod vcd;
+
 pub mod time;

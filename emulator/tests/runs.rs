@@ -8,3 +8,9 @@ mod determinism;
 
 #[path = "runs/snapshot.rs"]
 mod snapshot;
+
+#[path = "runs/trace.rs"]
+mod trace;
+
+#[path = "runs/analyser.rs"]
+mod analyser;

@@ -52,6 +52,8 @@ pub struct Measure {
     pub calls: Calls,
     /// What is left of `awake`, in ticks × hertz.
     rest: Cycles,
+    /// How long the interrupt that was entered last had waited.
+    pub(super) waited: Option<Ticks>,
     timed: Option<u32>,
     call: Option<Call>,
 }
@@ -76,6 +78,7 @@ impl Measure {
             latencies: Default::default(),
             calls: Calls::default(),
             rest: Cycles::default(),
+            waited: None,
             timed,
             call: None,
         }
@@ -134,12 +137,14 @@ impl Measure {
 
     /// The handler of interrupt `number` begins.
     pub(super) fn entered(&mut self, number: u16, now: Ticks) {
+        self.waited = None;
         let Some(index) = INTERRUPTS.iter().position(|&known| known == number) else {
             return;
         };
         let latency = &mut self.latencies[index];
         latency.count += 1;
         if let Some(requested) = latency.requested.take() {
+            self.waited = Some(now - requested);
             latency.worst = latency.worst.max(now - requested);
         }
     }

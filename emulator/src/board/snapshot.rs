@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
+use super::watch::Watch;
 use super::{Board, Shared};
 use crate::cpu::PeripheralBus;
 use crate::hash::Fnv1a;
@@ -74,6 +75,7 @@ impl Board {
             measure: self.measure.clone(),
             storm: self.storm,
             polling: self.polling.clone(),
+            watch: Watch::default(),
             stack_limit: self.stack_limit,
         }
     }

@@ -6,6 +6,7 @@
 use std::collections::VecDeque;
 
 use crate::cpu::Ram;
+use crate::journal::{Happening, Journal};
 
 const ISTAT: u32 = 0x80;
 const INTEN: u32 = 0x84;
@@ -102,6 +103,8 @@ pub struct UsbController {
     odd: [[bool; 2]; 16],
     /// Mistakes of the program that a real bus would punish, in its words.
     pub complaints: Vec<String>,
+    /// What happens on the bus, for those who watch; the time is the chip's to add.
+    pub journal: Journal,
 }
 
 impl UsbController {
@@ -123,14 +126,17 @@ impl UsbController {
             completed: VecDeque::new(),
             odd: [[false; 2]; 16],
             complaints: Vec::new(),
+            journal: Journal::default(),
         }
     }
 
     /// A reset of the chip or of the module; complaints are kept.
     pub fn reset(&mut self) {
         let complaints = std::mem::take(&mut self.complaints);
+        let journal = std::mem::take(&mut self.journal);
         *self = UsbController {
             complaints,
+            journal,
             ..UsbController::new()
         };
     }
@@ -148,10 +154,12 @@ impl UsbController {
     /// The host resets the bus.
     pub fn bus_reset(&mut self) {
         self.istat |= istat::USBRST;
+        self.journal.note(0, || Happening::UsbReset);
     }
 
     /// A frame begins.
     pub fn start_of_frame(&mut self, frame: u16) {
+        self.journal.note(0, || Happening::UsbFrame(frame & 0x7FF));
         if self.ctl & USBENSOFEN != 0 {
             self.frame = frame & 0x7FF;
             self.istat |= istat::SOFTOK;
@@ -176,6 +184,17 @@ impl UsbController {
 
     /// One transaction for `address` and `endpoint`.
     pub fn transact(&mut self, address: u8, endpoint: u8, token: &Token, ram: &Ram) -> Answer {
+        let answer = self.answer(address, endpoint, token, ram);
+        self.journal.note(0, || Happening::Usb {
+            address,
+            endpoint,
+            token: token.clone(),
+            answer: answer.clone(),
+        });
+        answer
+    }
+
+    fn answer(&mut self, address: u8, endpoint: u8, token: &Token, ram: &Ram) -> Answer {
         let Some(&enabled) = self.endpoints.get(usize::from(endpoint)) else {
             return Answer::Silence;
         };

@@ -8,6 +8,8 @@ use vrduino_emulator::board::Board;
 use vrduino_emulator::time::{self, Ticks};
 use vrduino_emulator::witness::Trap;
 
+use super::tools::Tools;
+
 /// Boots the tracker's image on an emulated VRduino board and prints what it streams.
 ///
 /// The stream goes to standard output and to a pseudo-terminal whose path is printed; everything else goes to
@@ -75,6 +77,10 @@ pub struct Arguments {
         allow_negative_numbers = true
     )]
     pub sensor_clock: f64,
+
+    /// What is written down about the run.
+    #[command(flatten)]
+    pub tools: Tools,
 }
 
 const FAULT_HELP: &str = "Break something, from S on (else from the start) and until T (else for good): absent (no sensor \
@@ -82,7 +88,7 @@ const FAULT_HELP: &str = "Break something, from S on (else from the start) and u
                           until it is clocked free), stuck-scl, no-pull-ups, unread (nobody reads the port), unplugged; may be given \
                           more than once";
 
-fn positive(text: &str) -> Result<f64, String> {
+pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (0.0..1e9).contains(&value) => Ok(value),
         _ => Err("give a number of seconds from 0 up to 1000000000, such as 10 or 2.5".into()),

@@ -6,6 +6,8 @@ mod port;
 
 mod report;
 
+mod tools;
+
 use std::io::{self, Write};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -75,6 +77,7 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
         timed_function: arguments.time.clone().unwrap_or_default(),
     };
     let mut board = Board::new(image, setup);
+    arguments.tools.watch(&mut board)?;
     let terminal = PseudoTerminal::open()?;
     eprintln!("image   {}", path.display());
     eprintln!("motion  {description}");
@@ -105,6 +108,9 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
             result => result?,
         }
     }
+    board
+        .finish_watching()
+        .map_err(|error| format!("the trace or the VCD file could not be written: {error}"))?;
     session.report.print(&mut board);
     Ok(board.stop().cloned())
 }
