@@ -1,5 +1,7 @@
 //! A whole board that runs: processor and chip in step, resets, and what happened on the way.
 
+pub mod debug;
+
 pub mod measure;
 
 mod polling;
@@ -15,6 +17,7 @@ pub mod watch;
 use std::sync::{Arc, MutexGuard};
 
 use crate::chip::{Chip, INTERRUPTS, is_steady};
+use crate::cpu::op::Access;
 use crate::cpu::{Cpu, Fault, Pace, PeripheralBus, RAM_BASE, Step};
 use crate::image::Image;
 use crate::journal::Happening;
@@ -59,6 +62,8 @@ pub struct Board {
     next_event: Ticks,
     asserted: [bool; INTERRUPTS.len()],
     instructions: u64,
+    /// What the last instruction reached for.
+    last_access: Option<Access>,
     resets: u32,
     events: Vec<Event>,
     pace: Pace,
@@ -115,6 +120,7 @@ impl Board {
             next_event: 0,
             asserted: [false; INTERRUPTS.len()],
             instructions: 0,
+            last_access: None,
             resets: 0,
             events: Vec::new(),
             pace: setup.pace,
@@ -134,22 +140,27 @@ impl Board {
     pub fn run(&mut self, span: Ticks) {
         let until = self.now.saturating_add(span);
         while self.now < until && self.stop.is_none() {
-            let due = self.now >= self.next_event;
-            if due && let Some(polling) = &mut self.polling {
-                polling.forget();
-            }
-            if due || self.shared.is_touched() {
-                self.service();
-            }
-            let before = self.watch.is_on().then(|| self.watched());
-            if self.cpu.is_asleep() {
-                self.sleep(until);
-            } else {
-                self.step(until);
-            }
-            if let Some(before) = before {
-                self.tell_changes(before);
-            }
+            self.advance(until);
+        }
+    }
+
+    /// One instruction, or a piece of sleep that does not go beyond `until`.
+    fn advance(&mut self, until: Ticks) {
+        let due = self.now >= self.next_event;
+        if due && let Some(polling) = &mut self.polling {
+            polling.forget();
+        }
+        if due || self.shared.is_touched() {
+            self.service();
+        }
+        let before = self.watch.is_on().then(|| self.watched());
+        if self.cpu.is_asleep() {
+            self.sleep(until);
+        } else {
+            self.step(until);
+        }
+        if let Some(before) = before {
+            self.tell_changes(before);
         }
     }
 
@@ -158,6 +169,7 @@ impl Board {
         self.pc = self.cpu.pc();
         let step = self.cpu.step(self.flash_ratio);
         self.instructions += 1;
+        self.last_access = step.access;
         self.pass(self.pace.of(step.cycles));
         self.measure.awake(step.cycles, self.core_hz);
         let moment = Moment {

@@ -5,6 +5,8 @@
 
 mod counters;
 
+pub mod debug;
+
 mod fault;
 
 pub mod flash_cache;
@@ -180,10 +182,7 @@ impl Cpu {
             self.keep_it_state();
         }
         if private.is_some_and(|access| access.store) {
-            self.calm = 0;
-            self.counting = self
-                .core
-                .with_sys(|sys| sys.syst_csr & 1 != 0 || sys.cyccnt_enabled());
+            self.look_at_counters();
         }
         let next = self.registers.r[15];
         let changed = (self.registers.xpsr ^ xpsr) & EXCEPTION != 0 || next == LOCKED_UP;

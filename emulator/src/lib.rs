@@ -42,4 +42,6 @@ pub mod trace;
 
 pub mod vcd;
 
+pub mod gdb;
+
 pub mod time;

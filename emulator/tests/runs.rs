@@ -14,3 +14,9 @@ mod trace;
 
 #[path = "runs/analyser.rs"]
 mod analyser;
+
+#[path = "runs/gdb.rs"]
+mod gdb;
+
+#[path = "runs/command.rs"]
+mod command;

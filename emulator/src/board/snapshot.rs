@@ -66,6 +66,7 @@ impl Board {
             next_event: self.next_event,
             asserted: self.asserted,
             instructions: self.instructions,
+            last_access: self.last_access,
             resets: self.resets,
             events: self.events.clone(),
             pace: self.pace,

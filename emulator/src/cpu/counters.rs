@@ -47,6 +47,14 @@ impl Cpu {
         self.owed = owed;
     }
 
+    /// Somebody may have started or stopped a counter.
+    pub(super) fn look_at_counters(&mut self) {
+        self.calm = 0;
+        self.counting = self
+            .core
+            .with_sys(|sys| sys.syst_csr & 1 != 0 || sys.cyccnt_enabled());
+    }
+
     /// Cycles until SysTick would pend its exception, 0 if it has; `None` if it never will.
     pub fn cycles_to_systick(&mut self) -> Option<u64> {
         self.settle();

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Parser, ValueEnum};
-use vrduino_emulator::board::Board;
 use vrduino_emulator::time::{self, Ticks};
 use vrduino_emulator::witness::Trap;
 
+use super::input::{Input, Kind};
 use super::tools::Tools;
 
 /// Boots the tracker's image on an emulated VRduino board and prints what it streams.
@@ -142,18 +142,6 @@ impl FromStr for Typed {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Kind {
-    Absent,
-    Frozen,
-    BrownOut,
-    StuckSda,
-    StuckScl,
-    NoPullUps,
-    Unread,
-    Unplugged,
-}
-
 /// Something broken for a while.
 #[derive(Debug, Clone)]
 pub struct Fault {
@@ -221,30 +209,20 @@ impl Arguments {
 }
 
 impl Script {
-    /// Does what is due.
-    pub fn apply(&mut self, board: &mut Board) {
-        let now = board.now();
-        for typed in self.typed.extract_if(.., |typed| typed.at <= now) {
-            board.chip().host.send(typed.keys.as_bytes());
-        }
+    /// What is due at `now`.
+    pub fn due(&mut self, now: Ticks) -> Vec<Input> {
+        let mut inputs: Vec<Input> = self
+            .typed
+            .extract_if(.., |typed| typed.at <= now)
+            .map(|typed| Input::Typed(typed.keys.into_bytes()))
+            .collect();
         for (fault, on) in &mut self.faults {
             let due = (fault.from..fault.until).contains(&now);
-            if due == *on {
-                continue;
-            }
-            *on = due;
-            let mut chip = board.chip();
-            match fault.kind {
-                Kind::Absent => chip.sensor.faults.absent = due,
-                Kind::Frozen => chip.sensor.faults.frozen = due,
-                Kind::BrownOut if due => chip.sensor.brown_out(now),
-                Kind::BrownOut => {}
-                Kind::StuckSda => chip.pins.sda_held_for = if due { 5 } else { 0 },
-                Kind::StuckScl => chip.pins.scl_held = due,
-                Kind::NoPullUps => chip.pins.no_pull_ups = due,
-                Kind::Unread => chip.host.set_reading(!due),
-                Kind::Unplugged => chip.host.set_plugged(!due),
+            if due != *on {
+                *on = due;
+                inputs.push(Input::Fault(fault.kind, due));
             }
         }
+        inputs
     }
 }

@@ -6,12 +6,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use vrduino_emulator::board::Board;
+use vrduino_emulator::gdb;
 use vrduino_emulator::time;
 use vrduino_emulator::trace::{Topic, Trace};
 use vrduino_emulator::vcd::Vcd;
 
 use super::Error;
 use super::arguments::positive;
+use super::say;
+use super::tcp::TcpPort;
 
 /// What is written down about the run.
 #[derive(Args, Debug)]
@@ -36,6 +39,23 @@ pub struct Tools {
     /// Write the lines of the sensor bus and of USB, sleep and interrupts to this file, for GTKWave
     #[arg(long, value_name = "FILE")]
     pub vcd: Option<PathBuf>,
+
+    /// Let a debugger in on this port of 127.0.0.1, and wait for it before the first instruction; 0 is any free port,
+    /// which is printed
+    #[arg(long, value_name = "PORT")]
+    pub gdb: Option<u16>,
+
+    /// The stream on this TCP port of 127.0.0.1 as well, both ways; 0 is any free port, which is printed
+    #[arg(long, value_name = "PORT")]
+    pub tcp: Option<u16>,
+
+    /// Write down what comes from outside, and when, to repeat the run with --replay
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["gdb", "replay"])]
+    pub record: Option<PathBuf>,
+
+    /// Repeat a run that was written down with --record; image, motion and options have to be the same
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["gdb", "typed", "fault", "seconds"])]
+    pub replay: Option<PathBuf>,
 }
 
 /// One topic, or all.
@@ -50,6 +70,26 @@ fn topic(text: &str) -> Result<Traced, String> {
 }
 
 impl Tools {
+    /// The door for a debugger, if one is wanted.
+    pub fn debugger(&self) -> Result<Option<gdb::Server>, Error> {
+        let Some(port) = self.gdb else {
+            return Ok(None);
+        };
+        let server = gdb::Server::open(port).map_err(|error| taken(port, &error))?;
+        say!("gdb     target remote {}", server.address()?);
+        Ok(Some(server))
+    }
+
+    /// The stream's TCP port, if one is wanted.
+    pub fn tcp_port(&self) -> Result<Option<TcpPort>, Error> {
+        let Some(port) = self.tcp else {
+            return Ok(None);
+        };
+        let door = TcpPort::open(port).map_err(|error| taken(port, &error))?;
+        say!("tcp     {}", door.address()?);
+        Ok(Some(door))
+    }
+
     /// Lets everything that is wanted watch the board.
     pub fn watch(&self, board: &mut Board) -> Result<(), Error> {
         if !self.trace.is_empty() {
@@ -82,4 +122,12 @@ fn create(path: &Path) -> Result<BufWriter<File>, Error> {
 
 fn in_file(path: &Path, error: &io::Error) -> Error {
     format!("{} cannot be written: {error}", path.display()).into()
+}
+
+/// What to say of a port of this computer that cannot be opened.
+fn taken(port: u16, error: &io::Error) -> Error {
+    format!(
+        "port {port} of 127.0.0.1 cannot be opened: {error}; give another, or 0 for any free one"
+    )
+    .into()
 }
