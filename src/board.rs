@@ -18,6 +18,8 @@ pub mod imu;
 
 pub mod led;
 
+pub mod loader;
+
 pub mod usb;
 
 pub mod watchdog;
@@ -32,6 +34,7 @@ use breadcrumb::Stage;
 use clock::Time;
 use imu::Imu;
 use led::Led;
+use loader::Loader;
 use usb::Usb;
 use watchdog::Watchdog;
 
@@ -43,6 +46,7 @@ pub struct Board {
     pub usb: Usb,
     imu: Imu,
     led: Led,
+    loader: Loader,
     time: Time,
     watchdog: Watchdog,
     last_life: Option<breadcrumb::LastLife>,
@@ -67,6 +71,7 @@ impl Board {
             usb,
             imu,
             led,
+            loader: Loader::default(),
             time: Time,
             watchdog: Watchdog::new(chip.wdog),
             last_life,
@@ -105,6 +110,8 @@ impl Board {
     pub fn end_of_turn(&mut self) {
         self.watchdog.feed();
         self.led.heartbeat(clock::milliseconds());
+        self.loader
+            .serve(self.usb.loader_asked(), clock::milliseconds());
         if self.usb.was_opened() {
             self.introduce();
         }
@@ -124,6 +131,8 @@ impl Board {
             self.time.sleep_for_a_tick();
             self.watchdog.feed();
             self.led.distress(clock::milliseconds());
+            self.loader
+                .serve(self.usb.loader_asked(), clock::milliseconds());
             // Keys mean nothing without a sensor; they must not pile up either.
             while self.usb.command().is_some() {}
             if self.usb.was_opened() {

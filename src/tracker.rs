@@ -169,6 +169,7 @@ impl Tracker {
     }
 
     /// The default mode runs the fused filter and nothing else.
+    #[inline(never)] // a function of its own in the image, which the emulator times
     fn track(&mut self, reading: &Reading<f32>) {
         match self.phase {
             Phase::Starting => return,

@@ -2,6 +2,8 @@
 
 pub mod debug;
 
+mod loader;
+
 pub mod measure;
 
 mod polling;
@@ -16,7 +18,7 @@ pub mod watch;
 
 use std::sync::{Arc, MutexGuard};
 
-use crate::chip::{Chip, INTERRUPTS, is_steady};
+use crate::chip::{Chip, INTERRUPTS};
 use crate::cpu::op::Access;
 use crate::cpu::{Cpu, Fault, Pace, PeripheralBus, RAM_BASE, Step};
 use crate::image::Image;
@@ -60,7 +62,9 @@ pub struct Board {
     /// The core clock over the flash clock.
     flash_ratio: u32,
     next_event: Ticks,
-    asserted: [bool; INTERRUPTS.len()],
+    /// Interrupt requests as the processor has them, one bit each.
+    asserted: u128,
+    flash_hidden: bool,
     instructions: u64,
     /// What the last instruction reached for.
     last_access: Option<Access>,
@@ -69,6 +73,8 @@ pub struct Board {
     pace: Pace,
     allowed: Vec<Trap>,
     stop: Option<Stop>,
+    /// Since when the board is in its loader.
+    loader: Option<Ticks>,
     /// Address of the instruction that is being executed, or was last.
     pc: u32,
     measure: Measure,
@@ -91,13 +97,8 @@ struct Storm {
 impl Board {
     /// A board at power-on with `image` in its flash.
     pub fn new(image: Image, setup: Setup) -> Board {
-        let configuration = [image.flash[0x40C], image.flash[0x40D]];
-        let sensor = Mpu9250::new(
-            Arc::from(setup.motion),
-            setup.who_am_i,
-            setup.sensor_clock_error,
-        );
-        let chip = Chip::new(sensor, configuration);
+        let sensor = Mpu9250::new(Arc::from(setup.motion), setup.part);
+        let chip = Chip::new(sensor, &image.flash);
         let ram = chip.ram.clone();
         let core_hz = chip.core_hz();
         let shared = Arc::new(Shared::new(chip));
@@ -118,7 +119,8 @@ impl Board {
             core_hz,
             flash_ratio: 1,
             next_event: 0,
-            asserted: [false; INTERRUPTS.len()],
+            asserted: 0,
+            flash_hidden: false,
             instructions: 0,
             last_access: None,
             resets: 0,
@@ -126,6 +128,7 @@ impl Board {
             pace: setup.pace,
             allowed: setup.allowed,
             stop: None,
+            loader: None,
             pc: 0,
             measure: Measure::new(timed),
             storm: Storm::default(),
@@ -139,7 +142,12 @@ impl Board {
     /// ([`Board::stop`]) does not run any more.
     pub fn run(&mut self, span: Ticks) {
         let until = self.now.saturating_add(span);
-        while self.now < until && self.stop.is_none() {
+        if self.loader.is_some() {
+            self.now = until;
+            self.shared.set_now(until);
+            return;
+        }
+        while self.now < until && self.stop.is_none() && self.loader.is_none() {
             self.advance(until);
         }
     }
@@ -271,7 +279,9 @@ impl Board {
     /// A fault on the peripheral bridges has been told by who saw it there.
     fn take_fault(&mut self, fault: Fault) {
         let told = !self.shared.chip().witness.is_empty();
-        if !told {
+        if fault.trap == Trap::Breakpoint && self.calls_loader() {
+            self.enter_loader();
+        } else if !told {
             self.judge(vec![Offence {
                 trap: fault.trap,
                 what: fault.what,
@@ -285,7 +295,7 @@ impl Board {
         };
         if let Some(access) = step.access
             && access.address >= PERIPHERALS
-            && (access.store || !is_steady(access.address))
+            && (access.store || !self.shared.chip().is_steady(access.address))
         {
             polling.give_up();
             return;
@@ -363,13 +373,21 @@ impl Board {
             self.reset(cause, why);
             return;
         }
-        for (index, number) in INTERRUPTS.into_iter().enumerate() {
-            let level = chip.interrupt(number);
-            if self.asserted[index] != level {
-                self.asserted[index] = level;
-                self.measure.line(index, level, self.now);
-                self.cpu.set_irq(number, level);
+        let lines = chip.interrupts();
+        let changed = lines ^ std::mem::replace(&mut self.asserted, lines);
+        if changed != 0 {
+            for (index, number) in INTERRUPTS.into_iter().enumerate() {
+                if changed >> number & 1 != 0 {
+                    let level = lines >> number & 1 != 0;
+                    self.measure.line(index, level, self.now);
+                    self.cpu.set_irq(number, level);
+                }
             }
+        }
+        let hidden = chip.flash.hides_flash();
+        if hidden != std::mem::replace(&mut self.flash_hidden, hidden) {
+            self.cpu
+                .show_flash((!hidden).then_some(&chip.flash.memory.program));
         }
         let core_hz = chip.core_hz();
         if core_hz != self.core_hz {
@@ -422,7 +440,7 @@ impl Board {
         self.tell_watchers(Some(Happening::Reset));
         self.remainder = 0;
         self.next_event = self.now;
-        self.asserted = [false; INTERRUPTS.len()];
+        self.asserted = 0;
         self.measure.reset();
         self.storm = Storm::default();
         if let Some(polling) = &mut self.polling {

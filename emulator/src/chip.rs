@@ -1,127 +1,48 @@
 //! The chip around the processor: which peripheral answers at which address, its clock gate, its interrupt, and what
 //! the board connects to it.
 
+mod analog;
+
+mod communication;
+
+mod interrupts;
+
+mod registers;
+
+mod slots;
+
+mod timers;
+
+mod transfers;
+
+pub use analog::Analog;
+pub use communication::Communication;
+pub use interrupts::{INTERRUPTS, interrupt_name};
+pub use slots::peripheral_at;
+pub use timers::Timers;
+
 use crate::cpu::Ram;
 use crate::host::Host;
 use crate::journal::{Happening, Journal};
 use crate::mpu9250::Mpu9250;
-use crate::peripherals::ftfl::FlashController;
+use crate::peripherals::crc::CrcGenerator;
+use crate::peripherals::dma::Dma;
+use crate::peripherals::dmamux::DmaMux;
+use crate::peripherals::ftfl::{FlashController, Memory};
 use crate::peripherals::i2c::I2c;
 use crate::peripherals::mcg::ClockGenerator;
-use crate::peripherals::pins::Pins;
+use crate::peripherals::pins::{self, Pins};
 use crate::peripherals::pit::IntervalTimer;
 use crate::peripherals::rcm::{Cause, ResetControl};
 use crate::peripherals::register_file::RegisterFile;
 use crate::peripherals::sim::SystemIntegration;
+use crate::peripherals::smc::ModeController;
+use crate::peripherals::tsi::TouchSensing;
 use crate::peripherals::usbotg::UsbController;
 use crate::peripherals::wdog::Watchdog;
 use crate::time::{self, NEVER, Ticks};
 use crate::witness::{Trap, Witness};
-
-/// A 4 KiB slot of the peripheral bridges (K20 manual, section 4.5).
-struct Slot {
-    page: u32,
-    name: &'static str,
-    /// Clock gate as (n, bit) of SIM_SCGCn; `None` is always clocked.
-    gate: Option<(u32, u32)>,
-    /// Bytes of an access; 0 where any width will do.
-    width: u8,
-}
-
-const fn slot(page: u32, name: &'static str, gate: Option<(u32, u32)>, width: u8) -> Slot {
-    Slot {
-        page,
-        name,
-        gate,
-        width,
-    }
-}
-
-#[rustfmt::skip]
-const SLOTS: &[Slot] = &[
-    slot(0x00, "AIPS0", None, 4),                slot(0x04, "AXBS", None, 4),
-    slot(0x08, "DMA", Some((7, 1)), 0),          slot(0x09, "DMA TCD", Some((7, 1)), 0),
-    slot(0x1F, "FMC", None, 4),                  slot(0x20, "FTFL", Some((6, 0)), 0),
-    slot(0x21, "DMAMUX", Some((6, 1)), 1),       slot(0x24, "CAN0", Some((6, 4)), 4),
-    slot(0x2C, "SPI0", Some((6, 12)), 0),        slot(0x2D, "SPI1", Some((6, 13)), 0),
-    slot(0x2F, "I2S0", Some((6, 15)), 4),        slot(0x32, "CRC", Some((6, 18)), 0),
-    slot(0x35, "USBDCD", Some((6, 21)), 4),      slot(0x36, "PDB", Some((6, 22)), 4),
-    slot(0x37, "PIT", Some((6, 23)), 4),         slot(0x38, "FTM0", Some((6, 24)), 4),
-    slot(0x39, "FTM1", Some((6, 25)), 4),        slot(0x3B, "ADC0", Some((6, 27)), 4),
-    slot(0x3D, "RTC", Some((6, 29)), 4),         slot(0x3E, "RFVBAT", None, 4),
-    slot(0x40, "LPTMR", Some((5, 0)), 4),        slot(0x41, "RFSYS", None, 0),
-    slot(0x45, "TSI", Some((5, 5)), 4),          slot(0x47, "SIM", None, 4),
-    slot(0x48, "SIM", None, 4),                  slot(0x49, "PORTA", Some((5, 9)), 4),
-    slot(0x4A, "PORTB", Some((5, 10)), 4),       slot(0x4B, "PORTC", Some((5, 11)), 4),
-    slot(0x4C, "PORTD", Some((5, 12)), 4),       slot(0x4D, "PORTE", Some((5, 13)), 4),
-    slot(0x52, "WDOG", None, 2),                 slot(0x61, "EWM", Some((4, 1)), 1),
-    slot(0x62, "CMT", Some((4, 2)), 1),          slot(0x64, "MCG", None, 1),
-    slot(0x65, "OSC", None, 1),                  slot(0x66, "I2C0", Some((4, 6)), 1),
-    slot(0x67, "I2C1", Some((4, 7)), 1),         slot(0x6A, "UART0", Some((4, 10)), 1),
-    slot(0x6B, "UART1", Some((4, 11)), 1),       slot(0x6C, "UART2", Some((4, 12)), 1),
-    slot(0x72, "USB0", Some((4, 18)), 1),        slot(0x73, "CMP", Some((4, 19)), 1),
-    slot(0x74, "VREF", Some((4, 20)), 1),        slot(0x7C, "LLWU", None, 1),
-    slot(0x7D, "PMC", None, 1),                  slot(0x7E, "SMC", None, 1),
-    slot(0x7F, "RCM", None, 1),                  slot(0x80, "AIPS1", None, 4),
-    slot(0xB8, "FTM2", Some((3, 24)), 4),        slot(0xBB, "ADC1", Some((3, 27)), 4),
-    slot(0xCC, "DAC0", Some((2, 12)), 0),        slot(0xFF, "GPIO", None, 4),
-];
-
-/// Interrupt numbers (K20 manual, table 3-4).
-mod irq {
-    pub const I2C0: u16 = 24;
-    pub const PIT0: u16 = 68;
-    pub const USBOTG: u16 = 73;
-}
-
-/// Interrupts the modelled peripherals can raise.
-pub const INTERRUPTS: [u16; 6] = [
-    irq::I2C0,
-    irq::PIT0,
-    irq::PIT0 + 1,
-    irq::PIT0 + 2,
-    irq::PIT0 + 3,
-    irq::USBOTG,
-];
-
-/// The name of the peripheral at `address`, as the manual has it.
-pub fn peripheral_at(address: u32) -> Option<&'static str> {
-    let page = (address >> 12).checked_sub(0x4_0000)?;
-    let slot = SLOTS.iter().find(|slot| slot.page == page)?;
-    Some(slot.name)
-}
-
-/// Who asks for interrupt `number`, of those that the modelled peripherals can raise.
-pub fn interrupt_name(number: u16) -> Option<&'static str> {
-    Some(match number {
-        irq::I2C0 => "I2C0",
-        irq::PIT0 => "PIT0",
-        irq::USBOTG => "USBOTG",
-        _ if number == irq::PIT0 + 1 => "PIT1",
-        _ if number == irq::PIT0 + 2 => "PIT2",
-        _ if number == irq::PIT0 + 3 => "PIT3",
-        _ => return None,
-    })
-}
-
-/// Whether reading `address` changes nothing, and finds the same until the next event or access.
-pub fn is_steady(address: u32) -> bool {
-    const I2C0_C1: u32 = 0x4006_6002;
-    const I2C0_S: u32 = 0x4006_6003;
-    const MCG_S: u32 = 0x4006_4006;
-    const FTFL_FSTAT: u32 = 0x4002_0000;
-    const USB_ISTAT: u32 = 0x4007_2080;
-    const UART0_S1: u32 = 0x4006_A004;
-    const SIM: u32 = 0x4004_7000;
-    const GPIO: u32 = 0x400F_F000;
-    let page = address & !0xFFF;
-    matches!(
-        address,
-        I2C0_C1 | I2C0_S | MCG_S | FTFL_FSTAT | USB_ISTAT | UART0_S1
-    ) || page == SIM
-        || page == SIM + 0x1000
-        || page == GPIO
-}
+use slots::{SLOTS, Slot};
 
 /// Every peripheral, the sensor, and the host.
 #[derive(Debug, Clone)]
@@ -148,11 +69,29 @@ pub struct Chip {
     /// When the clock generator's output may next change by itself.
     clock_change: Ticks,
     reset_control: ResetControl,
-    flash: FlashController,
+    /// The flash module with its memories.
+    pub flash: FlashController,
+    /// Converters and what is connected to them.
+    pub analog: Analog,
+    /// Timers beside the interval timer.
+    pub timers: Timers,
+    /// Serial interfaces beside USB and the sensor bus.
+    pub communication: Communication,
+    /// Touch sensing.
+    pub touch: TouchSensing,
+    modes: ModeController,
+    crc: CrcGenerator,
+    dma: Dma,
+    dma_mux: DmaMux,
+    dma_free_at: Ticks,
+    /// The RTC's seconds interrupt is a pulse.
+    second: bool,
+    /// Register files that a system reset leaves alone.
+    kept: RegisterFile,
     rest: RegisterFile,
-    flash_configuration: [u8; 2],
     /// Why the chip has to be reset now.
     pub reset_wanted: Option<(Cause, &'static str)>,
+    complaints_heard: usize,
     /// What the program did that silicon does not forgive.
     pub witness: Witness,
     /// What happens, for those who watch.
@@ -160,8 +99,8 @@ pub struct Chip {
 }
 
 impl Chip {
-    /// The chip at power-on; `flash_configuration` holds FSEC and FOPT.
-    pub fn new(sensor: Mpu9250, flash_configuration: [u8; 2]) -> Chip {
+    /// The chip at power-on with `program` in its flash.
+    pub fn new(sensor: Mpu9250, program: &[u8]) -> Chip {
         let clocks = ClockGenerator::new();
         let bus_hz = clocks.output_hz(0);
         Chip {
@@ -179,19 +118,24 @@ impl Chip {
             timer: IntervalTimer::new(),
             clock_change: 0,
             reset_control: ResetControl::new(Cause::PowerOn),
-            flash: Chip::flash(flash_configuration),
+            flash: FlashController::new(Memory::new(program)),
+            analog: Analog::new(),
+            timers: Timers::new(),
+            communication: Communication::new(),
+            touch: TouchSensing::new(),
+            modes: ModeController::new(),
+            crc: CrcGenerator::new(),
+            dma: Dma::new(),
+            dma_mux: DmaMux::default(),
+            dma_free_at: 0,
+            second: false,
+            kept: RegisterFile::default(),
             rest: RegisterFile::default(),
-            flash_configuration,
             reset_wanted: None,
+            complaints_heard: 0,
             witness: Witness::default(),
             journal: Journal::default(),
         }
-    }
-
-    fn flash([security, option]: [u8; 2]) -> FlashController {
-        /// Any number will do; a real board's is programmed at PJRC.
-        const SERIAL_NUMBER: u32 = 490_000;
-        FlashController::new(SERIAL_NUMBER, security, option)
     }
 
     /// A copy with a SRAM of its own.
@@ -216,7 +160,16 @@ impl Chip {
         self.usb.reset();
         self.timer = IntervalTimer::new();
         self.reset_control = ResetControl::new(cause);
-        self.flash = Chip::flash(self.flash_configuration);
+        self.flash.reset();
+        self.sim.set_partition(self.flash.memory.configuration());
+        self.analog.reset();
+        self.timers.reset();
+        self.communication.reset();
+        self.touch.reset();
+        self.modes = ModeController::new();
+        self.crc = CrcGenerator::new();
+        self.dma = Dma::new();
+        self.dma_mux = DmaMux::default();
         self.rest = RegisterFile::default();
         self.reset_wanted = None;
     }
@@ -248,6 +201,13 @@ impl Chip {
             self.timer.next_event(),
             self.i2c.next_event(),
             self.host.next_event(),
+            self.flash.next_event(),
+            self.analog.next_event(),
+            self.timers.next_event(),
+            self.communication.next_event(),
+            self.touch.next_event(),
+            self.next_transfer(),
+            if self.second { self.now } else { NEVER },
         ]
         .into_iter()
         .min()
@@ -265,12 +225,15 @@ impl Chip {
             self.judge_clocks();
         }
         self.timer.advance(now, bus_hz);
+        self.advance_modules();
         let journal = &mut self.journal;
         self.i2c
             .advance((now, bus_hz), &self.pins, &mut self.sensor, journal);
+        self.hear_the_sensor();
         if now >= self.host.next_event() {
             let clocked = self.usb_clocked();
-            self.host.advance(now, clocked, &mut self.usb, &self.ram);
+            self.host
+                .advance(now, clocked, &mut self.usb, &self.ram, &mut self.witness);
             for (_, happening) in self.usb.journal.take() {
                 self.journal.note(now, || happening);
             }
@@ -303,6 +266,18 @@ impl Chip {
         }
     }
 
+    /// Passes on what the sensor has to complain of since the last time.
+    fn hear_the_sensor(&mut self) {
+        let list = self.sensor.complaints.list();
+        for (_, complaint) in list.iter().skip(self.complaints_heard) {
+            if let Some(trap) = complaint.trap() {
+                let section = complaint.section();
+                self.witness.saw(trap, format!("{complaint} ({section})"));
+            }
+        }
+        self.complaints_heard = list.len();
+    }
+
     fn judge_usb_clock(&mut self) {
         if self.usb.pulled_up() && !self.usb_clocked() {
             self.witness.saw(
@@ -318,13 +293,46 @@ impl Chip {
             .get_or_insert((Cause::Watchdog, trap.rule()));
     }
 
-    /// Whether interrupt `number` is asserted.
-    pub fn interrupt(&self, number: u16) -> bool {
-        match number {
-            irq::I2C0 => self.i2c.interrupt(),
-            irq::USBOTG => self.usb.interrupt(),
-            _ => self.timer.interrupt(usize::from(number - irq::PIT0)),
+    fn advance_modules(&mut self) {
+        let clocks = self.clocks();
+        self.flash.advance(self.now);
+        self.timers.advance(&clocks);
+        self.second = self.timers.rtc.take_second();
+        for (converter, trigger) in self.timers.delay.advance(self.now) {
+            self.analog.converters[converter].trigger(trigger, &clocks);
         }
+        self.analog.advance(&clocks);
+        self.communication.advance(&self.pins, &clocks);
+        self.touch.advance(self.now);
+        for channel in self.timer.take_expired() {
+            self.dma_mux.trigger(channel);
+        }
+        self.transfer();
+    }
+
+    /// Drives pin `number` of the board (0 to 33) from outside, or lets go of it.
+    pub fn drive(&mut self, number: u8, level: Option<bool>) {
+        let Some((port, bit)) = pins::board_pin(number) else {
+            return;
+        };
+        let before = self.pins.level(port, bit);
+        self.pins.drive(port, bit, level);
+        let after = self.pins.level(port, bit);
+        if before != after {
+            self.timers.edge(&self.pins, (port, bit), after, self.now);
+        }
+    }
+
+    /// Level of pin `number` of the board (0 to 33).
+    pub fn level(&mut self, number: u8) -> bool {
+        self.timers.show(&mut self.pins, self.now);
+        pins::board_pin(number).is_some_and(|(port, bit)| self.pins.level(port, bit))
+    }
+
+    /// Puts bytes on the receive line of UART `n` (Serial1 is 0); `false` if no pin is connected to it.
+    pub fn send_serial(&mut self, n: usize, bytes: &[u8]) -> bool {
+        let clocks = self.clocks();
+        self.communication.receive(n, bytes, &self.pins, &clocks)
     }
 
     fn find(&mut self, address: u32, width: u8, write: bool) -> Option<&'static Slot> {
@@ -365,6 +373,9 @@ impl Chip {
 
     /// A read by the processor; `None` is a bus fault.
     pub fn read(&mut self, address: u32, width: u8) -> Option<u32> {
+        if let Some(answer) = self.read_flash_module(address, width) {
+            return answer;
+        }
         let slot = self.find(address, width, false)?;
         let (now, bus_hz, offset) = (self.now, self.bus_hz(), address & 0xFFF);
         Some(match slot.page {
@@ -377,19 +388,28 @@ impl Chip {
             0x66 => self.i2c.read(offset, now, bus_hz, &mut self.witness),
             0x72 => self.usb.read(offset),
             0x7F => self.reset_control.read(offset),
-            0xFF => self.pins.read_gpio(offset),
-            _ => self.rest.read(address, width),
+            0xFF => {
+                self.timers.show(&mut self.pins, now);
+                let word = self.pins.read_gpio(offset & !3);
+                narrow(word, offset, width)
+            }
+            _ => self.read_module(address, width),
         })
     }
 
     /// A write by the processor; `false` is a bus fault.
     pub fn write(&mut self, address: u32, width: u8, value: u32) -> bool {
+        if let Some(answer) = self.write_flash_module(address, width, value) {
+            return answer;
+        }
         let Some(slot) = self.find(address, width, true) else {
             return false;
         };
         let (now, bus_hz, offset, byte) = (self.now, self.bus_hz(), address & 0xFFF, value as u8);
         match slot.page {
-            0x20 => self.flash.write(offset, byte),
+            0x20 => self
+                .flash
+                .write(offset, width, value, now, &mut self.witness),
             0x37 => self.timer.write(offset, value, now, bus_hz),
             0x47 | 0x48 => {
                 self.sim.write(address - 0x4004_7000, value);
@@ -413,11 +433,11 @@ impl Chip {
                     .write(offset, byte, (now, bus_hz), &self.pins, &mut self.witness);
             }
             0x72 => {
-                self.usb.write(offset, byte);
+                self.usb.write(offset, byte, &mut self.witness);
                 self.judge_usb_clock();
             }
-            0xFF => self.pins.write_gpio(offset, value),
-            _ => self.rest.write(address, width, value),
+            0xFF => self.write_gpio(offset, width, value),
+            _ => self.write_module(address, width, value),
         }
         true
     }
@@ -439,8 +459,28 @@ impl Chip {
         }
     }
 
+    /// GPIO takes narrow accesses: the other bits of PDOR and PDDR stay, those of the other registers are 0.
+    fn write_gpio(&mut self, offset: u32, width: u8, value: u32) {
+        const PDOR: u32 = 0x00;
+        const PDDR: u32 = 0x14;
+        let shift = 8 * (offset & 3);
+        let mask = narrow(u32::MAX, 0, width) << shift;
+        let others = match offset & 0x3C {
+            PDOR | PDDR => self.pins.read_gpio(offset & !3) & !mask,
+            _ => 0,
+        };
+        let word = others | value << shift & mask;
+        self.pins.write_gpio(offset & !3, word);
+    }
+
     /// The moment, in seconds since power-on.
     pub fn seconds(&self) -> f64 {
         time::seconds(self.now)
     }
+}
+
+/// The bytes of a register's word that an access of `width` at `offset` sees.
+fn narrow(word: u32, offset: u32, width: u8) -> u32 {
+    let unused = 32 - 8 * u32::from(width.clamp(1, 4));
+    word >> (8 * (offset & 3)) & u32::MAX >> unused
 }

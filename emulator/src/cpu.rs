@@ -26,6 +26,7 @@ use rsemu::core::value::Width;
 use rsemu::cpu::arm::v7m::sys::Exception;
 use rsemu::cpu::arm::v7m::{ArmV7m, Config, Regs};
 
+use memory::Map;
 pub use memory::{PeripheralBus, Ram};
 
 use crate::witness::Trap;
@@ -92,6 +93,7 @@ pub struct Step {
 pub struct Cpu {
     core: ArmV7m,
     space: Arc<AddressSpace>,
+    map: Map,
     /// The registers after the last step, and before it.
     registers: Regs,
     before: Regs,
@@ -114,10 +116,11 @@ pub struct Cpu {
 impl Cpu {
     /// A processor about to leave reset, with `flash` at address 0.
     pub fn new(flash: &[u8], ram: &Ram, peripherals: Arc<dyn PeripheralBus>, pace: Pace) -> Cpu {
-        let space = memory::map(flash, ram, peripherals);
+        let (space, map) = Map::new(flash, ram, peripherals);
         Cpu {
             core: Cpu::core(&space),
             space,
+            map,
             registers: Regs::new(),
             before: Regs::new(),
             code: vec![Op::UNMET; FLASH_SIZE as usize / 2],

@@ -26,13 +26,15 @@ pub mod host;
 
 pub mod board;
 
+pub mod usbip;
+
 pub mod image;
 
 pub mod firmware;
 
-pub mod witness;
-
 pub mod random;
+
+pub mod witness;
 
 pub mod hash;
 

@@ -1,43 +1,81 @@
-//! The sensor: an MPU-9250 on the I2C bus, from its product specification and register map (rev. 1.6).
+//! The sensor: an MPU-9250 with its AK8963 on the I2C bus.
 //!
-//! Modelled: register reset values, start-up time, device reset, sleep, gyro and accelerometer ranges, sample rate with
-//! its divider, output registers that hold still during a burst, INT_STATUS. Not yet: low-pass filters, FIFO,
-//! self-test, magnetometer.
+//! ```text
+//!                       ┌ errors, noise ► low-pass ► counts ┐
+//! motion ──► steps ─────┤                                   ├─► registers ──► bus
+//!   (sampling)          │        (signal_path)              │   FIFO, interrupts
+//!                       └ AK8963 ──► auxiliary master ──────┘
+//! ```
+//!
+//! From the product specification (PS-MPU-9250A-01 rev. 1.0), the register map (RM-MPU-9250A-00 rev. 1.4; the
+//! accelerometer's filters of rev. 1.6 at second hand), the application note on self-test (AN-MPU-9250A-03) and the AK8963 data sheet
+//! (MS1356-E-02). Nothing is computed until the bus looks; what it then sees does not depend on how often it looks.
+
+pub mod ak8963;
+
+mod aux_master;
+
+pub mod complaint;
+
+mod fifo;
+
+mod interrupts;
+
+mod low_pass;
+
+pub mod part;
+
+mod registers;
+
+mod sample;
+
+mod sampling;
+
+mod self_test;
+
+mod signal_path;
+
+mod target;
 
 use std::sync::Arc;
 
-use crate::motion::{Instant, Motion};
-use crate::peripherals::i2c::Target;
-use crate::time::{self, MILLISECOND, Ticks};
+use crate::motion::Motion;
+use crate::time::{MILLISECOND, Ticks};
+use ak8963::Ak8963;
+use aux_master::AuxMaster;
+use complaint::{Complaint, Complaints};
+use fifo::Fifo;
+use interrupts::Interrupts;
+pub use part::Part;
+use registers::*;
+use sampling::{CYCLE, Clock, Mode, SLEEP, Schedule};
+use signal_path::{SignalPath, Started};
 
 /// Bus address with AD0 low.
 pub const ADDRESS: u8 = 0x68;
 
-const SMPLRT_DIV: usize = 0x19;
-const CONFIG: usize = 0x1A;
-const GYRO_CONFIG: usize = 0x1B;
-const ACCEL_CONFIG: usize = 0x1C;
-const INT_PIN_CFG: usize = 0x37;
-const INT_STATUS: usize = 0x3A;
-const ACCEL_XOUT_H: usize = 0x3B;
-const GYRO_ZOUT_L: usize = 0x48;
-const PWR_MGMT_1: usize = 0x6B;
-const PWR_MGMT_2: usize = 0x6C;
-const WHO_AM_I: usize = 0x75;
-
-const RAW_DATA_RDY: u8 = 1 << 0;
-const H_RESET: u8 = 1 << 7;
-const SLEEP: u8 = 1 << 6;
-
-/// Registers answer this long after power-on (specification, table 3: 11 ms typical, 100 ms at most).
+/// Registers answer this long after power-on (PS 3.4.2: 11 ms typical, 100 ms at most).
 const START_UP: Ticks = 11 * MILLISECOND;
 /// After H_RESET the registers are back at their defaults; the same start-up is assumed.
 const RESET_TIME: Ticks = 11 * MILLISECOND;
+/// From sleep to a valid output (PS 3.1 and 3.2), and the accelerometer's from power-on (PS 4.23).
+const GYRO_START: Ticks = 35 * MILLISECOND;
+const ACCEL_START: Ticks = 20 * MILLISECOND;
+const ACCEL_COLD_START: Ticks = 30 * MILLISECOND;
 
-/// Standard gravity as the specification's g.
-const G: f64 = 9.80665;
-/// Die temperature: 25 °C, in counts (333.87 LSB/°C above 21 °C).
-const TEMPERATURE: i16 = 1335;
+/// Steps that are computed where nobody wants the samples between, in seconds: 30 time constants of the slowest
+/// filter, so that nothing of what lies before can be seen.
+const FILTER_MEMORY: f64 = 1.0;
+
+/// Bits of USER_CTRL.
+const FIFO_ENABLED: u8 = 1 << 6;
+const I2C_MST_EN: u8 = 1 << 5;
+/// BYPASS_EN of INT_PIN_CFG.
+const BYPASS_EN: u8 = 1 << 1;
+/// FIFO_MODE of CONFIG.
+const FIFO_MODE: u8 = 1 << 6;
+/// ACCEL_INTEL_EN and ACCEL_INTEL_MODE of MOT_DETECT_CTRL.
+const WAKE_ON_MOTION: u8 = 3 << 6;
 
 /// What is wrong with the sensor or its wires, for tests and `--fault`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -60,200 +98,194 @@ pub struct Burst {
 /// The sensor.
 #[derive(Debug, Clone)]
 pub struct Mpu9250 {
-    registers: [u8; 128],
-    /// Output registers as the running transfer sees them.
-    shadow: [u8; 14],
-    who_am_i: u8,
-    motion: Arc<dyn Motion>,
-    /// Error of the sensor's own oscillator, e.g. 0.01 for 1 % fast.
-    clock_error: f64,
-    ready_at: Ticks,
-    /// Since when samples are taken, and how many there were.
-    sampling_since: Ticks,
-    samples: u64,
-    pointer: usize,
-    first_byte: bool,
+    part: Part,
+    registers: Registers,
+    path: SignalPath,
+    clock: Clock,
+    started: Started,
+    /// When the gyroscope can serve as the clock.
+    locks_at: Option<Ticks>,
+    fifo: Fifo,
+    interrupts: Interrupts,
+    /// RAW_DATA_RDY that waits for external sensor data.
+    ready_with_external: Option<Ticks>,
+    aux: AuxMaster,
+    magnetometer: Option<Ak8963>,
+    answers_at: Ticks,
+    /// It is the driver who asked for the reset it starts from.
+    reset_by_driver: bool,
+    /// I2C_IF_DIS was set.
+    spi_only: bool,
+    transfer: target::Transfer,
     /// Present faults.
     pub faults: Faults,
+    /// What the driver did wrong.
+    pub complaints: Complaints,
     /// Every burst from INT_STATUS on, once recording was asked for.
     pub recording: Option<Vec<Burst>>,
-    burst: Option<(Ticks, Vec<u8>)>,
 }
 
 impl Mpu9250 {
-    /// A sensor that has just been powered, moved by `motion`.
-    pub fn new(motion: Arc<dyn Motion>, who_am_i: u8, clock_error: f64) -> Mpu9250 {
+    /// A `part` that has just been powered, moved by `motion`.
+    pub fn new(motion: Arc<dyn Motion>, part: Part) -> Mpu9250 {
+        let registers = Registers::new();
+        let schedule = Schedule::of(&registers, &part, false);
+        let magnetometer = part
+            .magnetometer
+            .then(|| Ak8963::new(Arc::clone(&motion), part.magnetic, part.seed, 0));
         let mut sensor = Mpu9250 {
-            registers: [0; 128],
-            shadow: [0; 14],
-            who_am_i,
-            motion,
-            clock_error,
-            ready_at: START_UP,
-            sampling_since: 0,
-            samples: 0,
-            pointer: 0,
-            first_byte: false,
+            part,
+            registers,
+            path: SignalPath::new(motion, part),
+            clock: Clock::new(schedule, 0),
+            started: Started { gyro: 0, accel: 0 },
+            locks_at: None,
+            fifo: Fifo::default(),
+            interrupts: Interrupts::default(),
+            ready_with_external: None,
+            aux: AuxMaster::default(),
+            magnetometer,
+            answers_at: START_UP,
+            reset_by_driver: false,
+            spi_only: false,
+            transfer: target::Transfer::default(),
             faults: Faults::default(),
+            complaints: Complaints::default(),
             recording: None,
-            burst: None,
         };
         sensor.reset_registers(0);
         sensor
     }
 
+    /// Everything but the magnetometer, which is a die of its own, and what it depends on, as after power-on.
     fn reset_registers(&mut self, now: Ticks) {
-        self.registers = [0; 128];
-        self.registers[PWR_MGMT_1] = 0x01;
-        self.registers[WHO_AM_I] = self.who_am_i;
-        self.sampling_since = now;
-        self.samples = 0;
+        self.registers = Registers::new();
+        self.registers[WHO_AM_I] = self.part.who_am_i;
+        for axis in 0..3 {
+            let codes = |codes: [u8; 3]| codes[usize::from(axis)];
+            self.registers[SELF_TEST_GYRO + axis] = codes(self.part.gyro_self_test.codes);
+            self.registers[SELF_TEST_ACCEL + axis] = codes(self.part.accel_self_test.codes);
+        }
+        self.fifo = Fifo::default();
+        self.interrupts = Interrupts::default();
+        self.ready_with_external = None;
+        self.aux.clear();
+        self.started = Started {
+            gyro: now + GYRO_START,
+            accel: now + ACCEL_COLD_START,
+        };
+        self.locks_at = Some(self.started.gyro);
+        self.path.settle();
+        self.clock = Clock::new(Schedule::of(&self.registers, &self.part, false), now);
+        self.path
+            .configure(&self.registers, self.clock.schedule(), now);
     }
 
     /// The sensor loses power for a moment.
     pub fn brown_out(&mut self, now: Ticks) {
+        self.aux = AuxMaster::default();
         self.reset_registers(now);
-        self.ready_at = now + START_UP;
+        self.answers_at = now + START_UP;
+        self.reset_by_driver = false;
+        self.spi_only = false;
+        if let Some(magnetometer) = &mut self.magnetometer {
+            magnetometer.reset(now);
+        }
     }
 
-    /// Output data rate: 1 kHz behind the divider with the low-pass filter in use, 8 kHz without (register 0x1A).
-    fn sample_hz(&self) -> f64 {
-        let filter = self.registers[CONFIG] & 7;
-        let bypassed = self.registers[GYRO_CONFIG] & 3 != 0;
-        let hz = match (bypassed, filter) {
-            (true, _) => 32_000.0,
-            (false, 0 | 7) => 8_000.0,
-            _ => 1_000.0 / (f64::from(self.registers[SMPLRT_DIV]) + 1.0),
-        };
-        hz * (1.0 + self.clock_error)
+    /// Level of the INT pin, which the board does not connect: `true` is high.
+    pub fn interrupt_pin(&mut self, now: Ticks) -> bool {
+        self.advance(now);
+        self.interrupts.pin(&self.registers, now)
     }
 
-    /// Takes the samples that are due; only the last of them is ever seen.
+    /// The present part.
+    pub fn part(&self) -> &Part {
+        &self.part
+    }
+
+    /// Takes the steps that are due.
     fn advance(&mut self, now: Ticks) {
-        let since = self.sampling_since;
-        if self.faults.frozen || self.registers[PWR_MGMT_1] & SLEEP != 0 {
+        if let Some(at) = self.locks_at.filter(|&at| at <= now) {
+            self.take_steps(at);
+            self.locks_at = None;
+            self.follow_registers(at);
+        }
+        self.take_steps(now);
+        self.aux.finish(&mut self.registers, now);
+        self.announce_external(now);
+    }
+
+    fn take_steps(&mut self, now: Ticks) {
+        let due = self.clock.due(now);
+        if due <= self.clock.taken() {
             return;
         }
-        let hz = self.sample_hz();
-        let due = (time::seconds(now.saturating_sub(since)) * hz).floor() as u64;
-        if due > self.samples {
-            self.samples = due;
-            let at = time::seconds(since) + due as f64 / hz;
-            let instant = self.motion.at(at);
-            self.measure(&instant);
-            self.registers[INT_STATUS] |= RAW_DATA_RDY;
+        if self.faults.frozen {
+            self.clock.skip_to(due);
+            return;
         }
-    }
-
-    fn measure(&mut self, instant: &Instant) {
-        let accel_range = f64::from(2u32 << (self.registers[ACCEL_CONFIG] >> 3 & 3)) * G;
-        let gyro_range = f64::from(250u32 << (self.registers[GYRO_CONFIG] >> 3 & 3)).to_radians();
-        let counts = |value: f64, range: f64| {
-            (value / range * 32_768.0)
-                .round()
-                .clamp(-32_768.0, 32_767.0) as i16
-        };
-        let disabled = self.registers[PWR_MGMT_2];
-        let axis = |bit: u8, value: i16| if disabled >> bit & 1 != 0 { 0 } else { value };
-        let outputs = [
-            axis(5, counts(instant.force[0], accel_range)),
-            axis(4, counts(instant.force[1], accel_range)),
-            axis(3, counts(instant.force[2], accel_range)),
-            TEMPERATURE,
-            axis(2, counts(instant.rate[0], gyro_range)),
-            axis(1, counts(instant.rate[1], gyro_range)),
-            axis(0, counts(instant.rate[2], gyro_range)),
-        ];
-        for (register, byte) in
-            (ACCEL_XOUT_H..).zip(outputs.iter().flat_map(|value| value.to_be_bytes()))
-        {
-            self.registers[register] = byte;
+        let schedule = self.clock.schedule();
+        if !self.every_sample_counts() {
+            let memory = (FILTER_MEMORY * schedule.step_hz).ceil() as u64;
+            let memory = memory.next_multiple_of(schedule.steps_per_sample);
+            if due > self.clock.taken() + 2 * memory {
+                self.clock
+                    .skip_to(due - due % schedule.steps_per_sample - memory);
+                self.path.settle();
+            }
         }
-    }
-
-    fn read_register(&mut self, register: usize) -> u8 {
-        match register {
-            ACCEL_XOUT_H..=GYRO_ZOUT_L => self.shadow[register - ACCEL_XOUT_H],
-            INT_STATUS => std::mem::take(&mut self.registers[INT_STATUS]),
-            _ => {
-                if self.registers[INT_PIN_CFG] & 0x10 != 0 {
-                    self.registers[INT_STATUS] = 0;
-                }
-                self.registers[register]
+        while self.clock.taken() < due {
+            let (index, at) = self.clock.step();
+            self.path.step(index, at, &self.registers, self.started);
+            if index.is_multiple_of(schedule.steps_per_sample) {
+                self.sample(at);
             }
         }
     }
 
-    fn write_register(&mut self, register: usize, value: u8, now: Ticks) {
-        match register {
-            PWR_MGMT_1 if value & H_RESET != 0 => {
-                self.reset_registers(now);
-                self.ready_at = now + RESET_TIME;
-            }
-            ACCEL_XOUT_H..=GYRO_ZOUT_L | INT_STATUS | WHO_AM_I => {}
-            _ => {
-                self.registers[register] = value;
-                if [SMPLRT_DIV, CONFIG, GYRO_CONFIG, PWR_MGMT_1].contains(&register) {
-                    self.sampling_since = now;
-                    self.samples = 0;
-                }
-            }
+    /// Whether samples leave a trace besides the output registers.
+    fn every_sample_counts(&self) -> bool {
+        self.registers.has(USER_CTRL, FIFO_ENABLED)
+            || self.registers.has(USER_CTRL, I2C_MST_EN)
+            || self.registers.has(MOT_DETECT_CTRL, WAKE_ON_MOTION)
+    }
+
+    /// Takes over what was written to the registers that decide how to measure.
+    fn follow_registers(&mut self, now: Ticks) {
+        let locked = self.locks_at.is_none() && gyro_driven(&self.registers);
+        let schedule = Schedule::of(&self.registers, &self.part, locked);
+        let stood_still = self.clock.schedule().mode == Mode::Stopped;
+        if self.clock.follow(schedule, now) && stood_still {
+            self.path.settle();
+        }
+        self.path
+            .configure(&self.registers, schedule, self.clock.since());
+    }
+
+    /// Notes which elements a write has turned on; `before` are the registers as they were.
+    fn start_elements(&mut self, before: &Registers, now: Ticks) {
+        if !gyro_driven(before) && gyro_driven(&self.registers) {
+            self.started.gyro = now + GYRO_START;
+            self.locks_at = Some(self.started.gyro);
+            self.path.settle_gyro();
+        }
+        let awake = |registers: &Registers| registers[PWR_MGMT_1] & SLEEP == 0;
+        if !awake(before) && awake(&self.registers) {
+            self.started.accel = now + ACCEL_START;
         }
     }
 
-    fn end_burst(&mut self) {
-        if let Some((at, bytes)) = self.burst.take()
-            && let Some(recording) = &mut self.recording
-            && let Ok(bytes) = bytes.try_into()
-        {
-            recording.push(Burst { at, bytes });
-        }
+    fn is_bypassed(&self) -> bool {
+        self.registers.has(INT_PIN_CFG, BYPASS_EN) && !self.registers.has(USER_CTRL, I2C_MST_EN)
+    }
+
+    fn complain(&mut self, now: Ticks, complaint: Complaint) {
+        self.complaints.note(now, complaint);
     }
 }
 
-impl Target for Mpu9250 {
-    fn address(&mut self, byte: u8, now: Ticks) -> bool {
-        self.end_burst();
-        if self.faults.absent || byte >> 1 != ADDRESS || now < self.ready_at {
-            return false;
-        }
-        self.first_byte = true;
-        self.advance(now);
-        // The output registers do not change while the serial interface is busy (specification 4.16).
-        self.shadow
-            .copy_from_slice(&self.registers[ACCEL_XOUT_H..=GYRO_ZOUT_L]);
-        if byte & 1 != 0 && self.pointer == INT_STATUS {
-            self.burst = Some((now, Vec::with_capacity(15)));
-        }
-        true
-    }
-
-    fn write(&mut self, byte: u8, now: Ticks) -> bool {
-        if self.faults.absent {
-            return false;
-        }
-        if std::mem::take(&mut self.first_byte) {
-            self.pointer = usize::from(byte & 0x7F);
-        } else {
-            self.write_register(self.pointer, byte, now);
-            self.pointer = (self.pointer + 1) % 128;
-        }
-        true
-    }
-
-    fn read(&mut self, _now: Ticks) -> u8 {
-        if self.faults.absent {
-            return 0xFF;
-        }
-        let byte = self.read_register(self.pointer);
-        self.pointer = (self.pointer + 1) % 128;
-        if let Some((_, bytes)) = &mut self.burst {
-            bytes.push(byte);
-        }
-        byte
-    }
-
-    fn stop(&mut self) {
-        self.end_burst();
-    }
+/// Whether the gyroscope's drive is on: in standby it is, asleep, in cycle mode and with all axes disabled it is not.
+fn gyro_driven(registers: &Registers) -> bool {
+    registers[PWR_MGMT_1] & (SLEEP | CYCLE) == 0 && registers[PWR_MGMT_2] & 7 != 7
 }

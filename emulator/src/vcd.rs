@@ -87,8 +87,11 @@ impl<W: Write + Send> Vcd<W> {
         let exception = out.add_var(VarType::String, 1, "exception", None)?;
         let mut irqs = Vec::new();
         for number in INTERRUPTS {
-            let name = interrupt_name(number).unwrap_or("unknown");
-            irqs.push(out.add_wire(1, &format!("irq_{name}"))?);
+            let name = match interrupt_name(number) {
+                Some(name) => format!("irq_{name}"),
+                None => format!("irq_{number}"),
+            };
+            irqs.push(out.add_wire(1, &name)?);
         }
         out.upscope()?;
         out.upscope()?;

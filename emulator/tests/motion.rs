@@ -338,6 +338,18 @@ fn a_table_is_read_by_its_column_names() {
 }
 
 #[test]
+fn a_table_may_hold_the_magnetic_field() {
+    let motion =
+        motion::parse(b"t,gx,gy,gz,ax,ay,az,mx,my_ut,mz\n0,0,0,0,0,9.8,0,20,-40,5\n").unwrap();
+    assert_eq!(motion.at(0.0).magnetic_field(), [20.0, -40.0, 5.0]);
+    let message = text_error("t,gx,gy,gz,ax,ay,az,mx,mz\n0,0,0,0,0,0,0,0,0\n");
+    assert!(
+        message.contains("the magnetic field lacks the column my"),
+        "{message}"
+    );
+}
+
+#[test]
 fn a_table_without_truth_has_none() {
     let motion = motion::parse(b"t,gx,gy,gz,ax_g,ay_g,az_g\n0,0,0,0,0,1,0\n").unwrap();
     assert_eq!(motion.at(0.0).truth, None);

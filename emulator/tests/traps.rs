@@ -23,12 +23,6 @@ fn images() -> &'static PathBuf {
     })
 }
 
-fn exists(trap: Trap) -> bool {
-    images().join(trap.name()).exists() || {
-        println!("no image for {trap}");
-        false
-    }
-}
 fn board(trap: Trap, allowed: &[Trap]) -> Board {
     let image = Image::open(&images().join(trap.name())).expect("every trap has its image");
     Board::new(
@@ -39,21 +33,17 @@ fn board(trap: Trap, allowed: &[Trap]) -> Board {
 
 #[test]
 fn every_trap_stops_the_image_that_steps_into_it() {
-    for &trap in Trap::ALL.iter().filter(|t| exists(**t)) {
-        let mut board = board(trap, &[]);
-        board.run(1_000 * MILLISECOND);
-        let stop = board.stop();
-        if std::env::var("ALL").is_ok() && stop.is_none() {
-            println!("{trap}: nothing {}", board.now());
-            continue;
-        }
-        let stop = stop.unwrap();
-        if std::env::var("ALL").is_ok() {
-            if stop.trap != trap {
-                println!("{trap}: {stop}");
-            }
-            continue;
-        }
+    for &trap in Trap::ALL {
+        // Error flags are left by another mistake, which has to be passed first.
+        let first: &[Trap] = match trap {
+            Trap::FlashErrorFlags => &[Trap::FlashCommand],
+            _ => &[],
+        };
+        let mut board = board(trap, first);
+        board.run(6_000 * MILLISECOND);
+        let stop = board
+            .stop()
+            .unwrap_or_else(|| panic!("nothing stopped {trap}"));
         assert_eq!(stop.trap, trap, "{stop}");
         let (text, address) = (stop.to_string(), format!("{:#010x}", stop.pc));
         assert!(
@@ -68,20 +58,34 @@ fn every_trap_stops_the_image_that_steps_into_it() {
 
 #[test]
 fn a_trap_that_is_allowed_is_told_and_passed() {
-    for &trap in Trap::ALL.iter().filter(|t| exists(**t)) {
+    for &trap in Trap::ALL {
         let mut board = board(trap, Trap::ALL);
-        board.run(200 * MILLISECOND);
+        let mut told = Vec::new();
+        // A request may be put off for five seconds; every other trap is sprung at once.
+        for _ in 0..30 {
+            board.run(200 * MILLISECOND);
+            told.extend(board.take_events());
+            if told.iter().any(|event| event.what.starts_with(trap.name())) {
+                break;
+            }
+        }
         assert_eq!(board.stop(), None);
-        let events = board.take_events();
         assert!(
-            events
-                .iter()
-                .any(|event| event.what.starts_with(trap.name())),
+            told.iter().any(|event| event.what.starts_with(trap.name())),
             "{trap}: {:?}",
-            events.first()
+            told.first()
         );
         assert!(board.now() >= 200 * MILLISECOND, "{trap}: time stood still");
     }
+}
+
+#[test]
+fn the_usb_device_without_its_mistake_is_not_stopped() {
+    let image = Image::open(&images().join("usb-right")).expect("it is an image");
+    let mut board = Board::new(image, Setup::new(Box::new(Turns::new(1e6, 0.0))));
+    board.run(400 * MILLISECOND);
+    assert_eq!(board.stop(), None);
+    assert!(board.chip().host.take_received().starts_with(b".\n.\n"));
 }
 
 #[test]

@@ -24,6 +24,7 @@ use vrduino::command::{Command, Parser};
 use vrduino::wire::Line;
 
 use super::breadcrumb::{self, Stage};
+use super::loader;
 use bus::Bus;
 
 /// Lines that may wait for the host: an INFO block with a verdict on the bias is ten at once. At the
@@ -43,6 +44,7 @@ static PORT: Mutex<RefCell<Option<Port>>> = Mutex::new(RefCell::new(None));
 #[unsafe(export_name = "vrduino_dropped_lines")]
 static DROPPED_LINES: AtomicU32 = AtomicU32::new(0);
 static OPENED: AtomicBool = AtomicBool::new(false);
+static LOADER_ASKED: AtomicBool = AtomicBool::new(false);
 
 /// Lines that found no room since start.
 pub fn dropped_lines() -> u32 {
@@ -110,6 +112,11 @@ impl Usb {
         OPENED.store(false, Ordering::Relaxed);
         opened
     }
+
+    /// Whether the host has asked for the board's loader.
+    pub fn loader_asked(&self) -> bool {
+        LOADER_ASKED.load(Ordering::Relaxed)
+    }
 }
 
 /// The interrupt's end.
@@ -127,6 +134,9 @@ struct Port {
 impl Port {
     fn service(&mut self) {
         while self.device.poll(&mut [&mut self.class]) {}
+        if self.class.line_coding().data_rate() == loader::BAUD {
+            LOADER_ASKED.store(true, Ordering::Relaxed);
+        }
         self.take_keys();
         if self.device.state() == UsbDeviceState::Configured {
             self.notice_opening();

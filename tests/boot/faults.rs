@@ -20,7 +20,7 @@ fn a_missing_sensor_is_reported_and_found_once_it_is_there() {
 #[test]
 fn an_unknown_part_is_named() {
     let mut setup = Setup::new(Box::new(Turns::new(1e6, 0.0)));
-    setup.who_am_i = 0x68;
+    setup.part = setup.part.who_am_i(0x68);
     let mut run = Run::with(setup);
     run.wait_for("error: unknown part 0x68", 2.0);
     run.seconds(2.0);
@@ -32,7 +32,7 @@ fn an_unknown_part_is_named() {
 fn parts_of_the_same_family_are_accepted() {
     for who_am_i in [0x70, 0x73] {
         let mut setup = Setup::new(Box::new(Turns::new(1e6, 0.0)));
-        setup.who_am_i = who_am_i;
+        setup.part = setup.part.who_am_i(who_am_i);
         Run::with(setup).wait_for("QC ", 2.0);
     }
 }

@@ -3,6 +3,7 @@
 use vrduino_emulator::host::{Outcome, Request};
 use vrduino_emulator::motion::Motion;
 use vrduino_emulator::motion::turns::Turns;
+use vrduino_emulator::time;
 
 use crate::run::{PRINTED, Run, Y, degrees_between};
 
@@ -14,8 +15,8 @@ fn a_strict_host_enumerates_the_board_as_a_teensy_and_finds_nothing_to_object_to
     let device = chip.host.identity().expect("the device is configured");
     assert_eq!((device.vendor, device.product), (0x16C0, 0x0483));
     assert_eq!(device.manufacturer, "Teensyduino");
-    assert_eq!(chip.host.complaints, [""; 0]);
-    assert_eq!(chip.usb.complaints, [""; 0]);
+    drop(chip);
+    assert_eq!(run.board.stop(), None);
 }
 
 #[test]
@@ -98,8 +99,85 @@ fn the_board_survives_a_bus_reset_a_replug_and_back_to_back_requests() {
         run.orientations.len() > before + 40,
         "the stream has not gone on"
     );
-    assert_eq!(run.board.chip().host.complaints, [""; 0]);
+    assert_eq!(run.board.stop(), None);
     assert_eq!(run.board.resets(), 0);
+}
+
+#[test]
+fn a_request_at_134_baud_hands_the_board_to_its_loader_with_and_without_a_sensor() {
+    for absent in [false, true] {
+        let mut run = Run::still();
+        run.board.chip().sensor.faults.absent = absent;
+        run.seconds(2.5);
+        // Any other speed is only remembered.
+        run.board.chip().host.set_baud(9600);
+        run.seconds(0.1);
+        assert_eq!(run.board.in_loader(), None);
+        let asked = run.board.now();
+        run.board.chip().host.set_baud(134);
+        run.seconds(0.1);
+        let entered = run.board.in_loader().expect("the loader has the board");
+        let took = time::seconds(entered - asked);
+        assert!((0.015..0.025).contains(&took), "after {took} s");
+        let outcomes = run.board.chip().host.take_outcomes();
+        let acknowledged =
+            |(_, outcome): &(Request, Outcome)| *outcome == Outcome::Done(Vec::new());
+        assert!(
+            outcomes.len() == 2 && outcomes.iter().all(acknowledged),
+            "{outcomes:?}"
+        );
+        assert_eq!(run.board.resets(), 0);
+    }
+}
+
+#[test]
+fn bus_resets_at_any_moment_of_the_traffic_leave_nothing_behind() {
+    let mut run = Run::still();
+    run.seconds(1.2);
+    for moment in 0..8 {
+        run.seconds(0.05 + 0.001_37 * f64::from(moment));
+        run.board.chip().host.reset_bus();
+        run.seconds(0.25);
+        assert!(run.board.chip().host.is_open(), "after reset {moment}");
+        run.forget();
+        run.wait_for("QC ", 0.5);
+    }
+    assert_eq!((run.board.stop(), run.board.resets()), (None, 0));
+}
+
+#[test]
+fn a_noisy_cable_costs_time_but_no_byte() {
+    let mut run = Run::still();
+    // Every fourth transaction, from the first request on.
+    run.board.chip().host.set_noise(4);
+    run.seconds(1.5);
+    assert_eq!(run.board.chip().host.identity().unwrap().product, 0x0483);
+    run.board.chip().host.send(b"1");
+    run.wait_for("FLAT ", 0.5);
+    run.seconds(1.0);
+    let (whole, _) = run.text.rsplit_once('\n').expect("lines");
+    for line in whole.lines() {
+        let known = ["QC ", "FLAT ", "vrduino ", "Measuring bias", "bias: "];
+        assert!(known.iter().any(|tag| line.starts_with(tag)), "{line:?}");
+    }
+    assert_eq!((run.board.stop(), run.board.resets()), (None, 0));
+}
+
+#[test]
+fn the_board_sleeps_with_the_bus_and_streams_again_when_it_is_resumed() {
+    let mut run = Run::still();
+    run.seconds(1.5);
+    for _ in 0..2 {
+        run.board.chip().host.set_suspended(true);
+        run.seconds(0.3);
+        let asleep = run.orientations.len();
+        run.seconds(0.2);
+        assert_eq!(run.orientations.len(), asleep);
+        run.board.chip().host.set_suspended(false);
+        run.seconds(0.3);
+        assert!(run.orientations.len() > asleep + 20, "it does not go on");
+    }
+    assert_eq!((run.board.stop(), run.board.resets()), (None, 0));
 }
 
 #[test]

@@ -53,7 +53,7 @@ impl Board {
     pub fn run_with(&mut self, span: Ticks, stops: &Stops, leaving: bool) -> Option<Halt> {
         let until = self.now.saturating_add(span);
         let mut first = leaving;
-        while self.now < until {
+        while self.now < until && self.loader.is_none() {
             if self.stop.is_some() {
                 return Some(Halt::Trap);
             }
@@ -87,7 +87,7 @@ impl Board {
     pub fn step_instruction(&mut self, span: Ticks) -> Option<Halt> {
         let until = self.now.saturating_add(span);
         let executed = self.instructions;
-        while self.now < until && self.stop.is_none() {
+        while self.now < until && self.stop.is_none() && self.loader.is_none() {
             self.advance(until);
             if self.instructions != executed {
                 break;

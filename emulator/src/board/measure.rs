@@ -75,7 +75,7 @@ impl Measure {
         Measure {
             awake: Cycles::default(),
             stack_low: u32::MAX,
-            latencies: Default::default(),
+            latencies: [Latency::default(); INTERRUPTS.len()],
             calls: Calls::default(),
             rest: Cycles::default(),
             waited: None,

@@ -2,16 +2,15 @@
 
 use crate::cpu::Pace;
 use crate::motion::Motion;
+use crate::mpu9250::Part;
 use crate::witness::Trap;
 
 /// What is on the board, and how strictly it is judged.
 pub struct Setup {
     /// What the sensor experiences, from power-on.
     pub motion: Box<dyn Motion>,
-    /// The sensor's identity: 0x71 is an MPU-9250.
-    pub who_am_i: u8,
-    /// Relative error of the sensor's oscillator (specification: within ±1 %).
-    pub sensor_clock_error: f64,
+    /// The individual sensor: what it is, and its errors.
+    pub part: Part,
     /// Traps that do not stop the run: the board goes on as silicon would.
     pub allowed: Vec<Trap>,
     /// By which end of the band of cycle counts time passes.
@@ -27,8 +26,7 @@ impl Setup {
     pub fn new(motion: Box<dyn Motion>) -> Setup {
         Setup {
             motion,
-            who_am_i: 0x71,
-            sensor_clock_error: 0.0,
+            part: Part::perfect(),
             allowed: Vec::new(),
             pace: Pace::default(),
             skip_polling: true,

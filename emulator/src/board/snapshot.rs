@@ -46,15 +46,19 @@ impl Board {
 
     fn fork(&self) -> Board {
         let chip = self.shared.chip().fork();
-        let ram = chip.ram.clone();
+        let (ram, flash) = (chip.ram.clone(), chip.flash.memory.program.clone());
+        let hidden = self.flash_hidden;
         let shared = Arc::new(Shared::new(chip));
         shared.set_now(self.now);
         if !self.shared.is_touched() {
             shared.look();
         }
-        let cpu = self
+        let mut cpu = self
             .cpu
-            .fork(&ram, Arc::clone(&shared) as Arc<dyn PeripheralBus>);
+            .fork(&flash, &ram, Arc::clone(&shared) as Arc<dyn PeripheralBus>);
+        if hidden {
+            cpu.show_flash(None);
+        }
         Board {
             cpu,
             shared,
@@ -65,6 +69,8 @@ impl Board {
             flash_ratio: self.flash_ratio,
             next_event: self.next_event,
             asserted: self.asserted,
+            flash_hidden: self.flash_hidden,
+            loader: self.loader,
             instructions: self.instructions,
             last_access: self.last_access,
             resets: self.resets,

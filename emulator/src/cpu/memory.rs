@@ -4,18 +4,22 @@ use std::sync::Arc;
 
 use rsemu::core::error::BusError;
 use rsemu::core::space::{
-    AccessConstraints, AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite,
+    AccessConstraints, AddressSpace, Mapping, MappingId, MemAttrs, MemOps, RamStore, Region,
+    RomStore, RomWrite,
 };
 use rsemu::core::value::{Endian, Width};
 
-use super::{RAM_BASE, RAM_SIZE};
+use super::op::Op;
+use super::{Cpu, FLASH_SIZE, RAM_BASE, RAM_SIZE};
 
 const PERIPHERALS_BASE: u32 = 0x4000_0000;
 const PERIPHERALS_SIZE: u32 = 0x0010_0000;
-pub(super) const FLEXRAM_BASE: u32 = 0x1400_0000;
-pub(super) const FLEXRAM_SIZE: u64 = 2 * 1024;
+const FLEXNVM_BASE: u32 = 0x1000_0000;
+const FLEXNVM_SIZE: u32 = 32 * 1024;
+const FLEXRAM_BASE: u32 = 0x1400_0000;
+const FLEXRAM_SIZE: u32 = 2 * 1024;
 
-/// What answers the processor's accesses to the peripheral bridges.
+/// What answers the processor's accesses to the peripheral bridges and to the flash module's memories.
 pub trait PeripheralBus: Send + Sync + std::fmt::Debug {
     /// Reads `width` bytes; `None` is a bus error.
     fn read(&self, address: u32, width: u8) -> Option<u32>;
@@ -103,43 +107,74 @@ impl Default for Ram {
     }
 }
 
-/// The chip's memory map, with `flash` at address 0 (K20 manual, section 4.2).
-pub(super) fn map(
-    flash: &[u8],
-    ram: &Ram,
+/// The chip's memory map (K20 manual, section 4.2), as far as it can change.
+#[derive(Debug)]
+pub(super) struct Map {
+    flash: MappingId,
     peripherals: Arc<dyn PeripheralBus>,
-) -> Arc<AddressSpace> {
-    let space = AddressSpace::new("K20", 32);
-    {
-        let mut map = space.topology();
-        let rom = Arc::new(RomStore::from_slice(flash));
-        let regions = [
-            (0, Region::rom("flash", rom, RomWrite::Fault)),
-            (RAM_BASE, Region::ram("sram", Arc::clone(&ram.0))),
-            (
-                FLEXRAM_BASE,
-                Region::ram("flexram", Arc::new(RamStore::new(FLEXRAM_SIZE))),
-            ),
-            (
-                PERIPHERALS_BASE,
-                Region::io(
-                    "peripherals",
-                    u64::from(PERIPHERALS_SIZE),
-                    Arc::new(Bridge(peripherals)),
-                ),
-            ),
-        ];
-        for (base, region) in regions {
-            map.map(region, u64::from(base))
-                .expect("the chip's regions do not overlap");
-        }
-    }
-    Arc::new(space)
 }
 
-/// Adapts [`PeripheralBus`] to the engine's idea of a memory-mapped device.
+impl Map {
+    /// The map with `flash` at address 0.
+    pub(super) fn new(
+        flash: &[u8],
+        ram: &Ram,
+        peripherals: Arc<dyn PeripheralBus>,
+    ) -> (Arc<AddressSpace>, Map) {
+        let space = AddressSpace::new("K20", 32);
+        let door = |name: &str, base: u32, size: u32| {
+            let bridge = Bridge(Arc::clone(&peripherals), base);
+            (base, Region::io(name, u64::from(size), Arc::new(bridge)))
+        };
+        let flash = {
+            let mut map = space.topology();
+            let mut place = |(base, region): (u32, Region)| {
+                map.map(region, u64::from(base))
+                    .expect("the chip's regions do not overlap")
+            };
+            place((RAM_BASE, Region::ram("sram", Arc::clone(&ram.0))));
+            place(door("flexnvm", FLEXNVM_BASE, FLEXNVM_SIZE));
+            place(door("flexram", FLEXRAM_BASE, FLEXRAM_SIZE));
+            place(door("peripherals", PERIPHERALS_BASE, PERIPHERALS_SIZE));
+            place((0, readable(flash)))
+        };
+        (Arc::new(space), Map { flash, peripherals })
+    }
+
+    /// Puts new contents into the flash, or the flash module in its place.
+    fn show_flash(&self, space: &AddressSpace, contents: Option<&[u8]>) {
+        let region = match contents {
+            Some(contents) => readable(contents),
+            None => {
+                let bridge = Bridge(Arc::clone(&self.peripherals), 0);
+                Region::io("flash at work", u64::from(FLASH_SIZE), Arc::new(bridge))
+            }
+        };
+        space
+            .topology()
+            .replace(self.flash, Mapping::new(region, 0))
+            .expect("the region is as large as the one before");
+    }
+}
+
+impl Cpu {
+    /// Shows the processor new contents of its flash, or hides them while a command works on the flash: every access
+    /// then goes to the flash module.
+    pub fn show_flash(&mut self, contents: Option<&[u8]>) {
+        self.map.show_flash(&self.space, contents);
+        self.code.fill(Op::UNMET);
+    }
+}
+
+/// Flash that can be read and executed, but not stored to.
+fn readable(contents: &[u8]) -> Region {
+    let store = Arc::new(RomStore::from_slice(contents));
+    Region::rom("flash", store, RomWrite::Fault)
+}
+
+/// Adapts [`PeripheralBus`] to the engine's idea of a memory-mapped device at an address.
 #[derive(Debug)]
-struct Bridge(Arc<dyn PeripheralBus>);
+struct Bridge(Arc<dyn PeripheralBus>, u32);
 
 impl MemOps for Bridge {
     fn read(&self, offset: u64, dst: &mut [u8], attrs: MemAttrs) -> Result<(), BusError> {
@@ -147,12 +182,12 @@ impl MemOps for Bridge {
             dst.fill(0);
             return Ok(());
         }
-        if attrs.purpose.is_fetch() {
+        if attrs.purpose.is_fetch() && self.1 != 0 {
             return Err(BusError::BadAccess);
         }
         let value = self
             .0
-            .read(PERIPHERALS_BASE + offset as u32, dst.len() as u8)
+            .read(self.1 + offset as u32, dst.len() as u8)
             .ok_or(BusError::BadAccess)?;
         dst.copy_from_slice(&value.to_le_bytes()[..dst.len()]);
         Ok(())
@@ -165,7 +200,7 @@ impl MemOps for Bridge {
         let mut bytes = [0; 4];
         bytes[..src.len()].copy_from_slice(src);
         let accepted = self.0.write(
-            PERIPHERALS_BASE + offset as u32,
+            self.1 + offset as u32,
             src.len() as u8,
             u32::from_le_bytes(bytes),
         );
@@ -179,6 +214,6 @@ impl MemOps for Bridge {
     fn constraints(&self) -> AccessConstraints {
         AccessConstraints::IO
             .with_widths(Width::U8, Width::U32)
-            .with_natural_alignment(true)
+            .with_natural_alignment(self.1 == PERIPHERALS_BASE)
     }
 }

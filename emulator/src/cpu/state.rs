@@ -8,8 +8,8 @@ use rsemu::core::state::{ChunkReader, MachineShape, StateReader, StateWriter};
 use rsemu::cpu::arm::v7m::ArmV7m;
 
 use super::counters::settle;
-use super::memory::{self, FLEXRAM_BASE, FLEXRAM_SIZE};
-use super::{Cpu, FLASH_SIZE, PeripheralBus, RAM_BASE, RAM_SIZE, Ram};
+use super::memory::Map;
+use super::{Cpu, PeripheralBus, RAM_BASE, RAM_SIZE, Ram};
 use crate::hash::Fnv1a;
 
 /// Where the engine's saved state counts cycles of its own, which influence nothing: behind sixteen registers, the
@@ -17,18 +17,15 @@ use crate::hash::Fnv1a;
 const ENGINE_CYCLES: std::ops::Range<usize> = 80..88;
 
 impl Cpu {
-    /// A copy that goes on from here, with `ram` and `peripherals` in the place of the original's.
-    pub(crate) fn fork(&self, ram: &Ram, peripherals: Arc<dyn PeripheralBus>) -> Cpu {
-        let space = memory::map(&self.memory(0, FLASH_SIZE), ram, peripherals);
-        let flexram = self.memory(FLEXRAM_BASE, FLEXRAM_SIZE as u32);
-        space
-            .write_bytes(u64::from(FLEXRAM_BASE), &flexram, MemAttrs::DEBUG)
-            .expect("the copy has the same memories");
+    /// A copy that goes on from here, with `flash`, `ram` and `peripherals` in the place of the original's.
+    pub(crate) fn fork(&self, flash: &[u8], ram: &Ram, peripherals: Arc<dyn PeripheralBus>) -> Cpu {
+        let (space, map) = Map::new(flash, ram, peripherals);
         let core = Cpu::core(&space);
         load(&core, &saved(&self.core));
         Cpu {
             core,
             space,
+            map,
             registers: self.registers,
             before: self.before,
             code: self.code.clone(),
@@ -68,9 +65,7 @@ impl Cpu {
             "{owed_systick} {} {} {} {:?} {:?}",
             self.counting, self.asleep, self.faults_seen, self.pace, self.timing
         );
-        hash.bytes(&self.memory(0, FLASH_SIZE));
         hash.bytes(&self.memory(RAM_BASE, RAM_SIZE));
-        hash.bytes(&self.memory(FLEXRAM_BASE, FLEXRAM_SIZE as u32));
     }
 
     fn memory(&self, base: u32, length: u32) -> Vec<u8> {

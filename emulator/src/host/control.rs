@@ -1,78 +1,17 @@
-//! Control transfers (USB 2.0, 8.5.3): setup, data and status stage, with their toggles and retries.
+//! The control pipe (USB 2.0, 8.5.3): setup, data and status stage, with their toggles and retries.
 
+use std::collections::VecDeque;
+
+use super::transfer::{Failure, Outcome, Request, Ticket};
+use super::wire::{RETRY, TRIES, Wire};
 use crate::peripherals::usbotg::{Answer, Token};
-use crate::time::{SECOND, Ticks};
+use crate::time::{MICROSECOND, SECOND, Ticks};
+use crate::witness::Trap;
 
-/// A control request.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Request {
-    /// bmRequestType, bRequest, wValue, wIndex, wLength.
-    pub setup: [u8; 8],
-    /// What the host sends in the data stage of an OUT request.
-    pub data: Vec<u8>,
-}
-
-impl Request {
-    /// A request that reads up to `length` bytes.
-    pub fn read(kind: u8, request: u8, value: u16, index: u16, length: u16) -> Request {
-        Request {
-            setup: Request::pack(kind, request, value, index, length),
-            data: Vec::new(),
-        }
-    }
-
-    /// A request that writes `data`.
-    pub fn write(kind: u8, request: u8, value: u16, index: u16, data: &[u8]) -> Request {
-        Request {
-            setup: Request::pack(kind, request, value, index, data.len() as u16),
-            data: data.to_vec(),
-        }
-    }
-
-    fn pack(kind: u8, request: u8, value: u16, index: u16, length: u16) -> [u8; 8] {
-        let ([v0, v1], [i0, i1], [l0, l1]) = (
-            value.to_le_bytes(),
-            index.to_le_bytes(),
-            length.to_le_bytes(),
-        );
-        [kind, request, v0, v1, i0, i1, l0, l1]
-    }
-
-    fn length(&self) -> usize {
-        usize::from(u16::from_le_bytes([self.setup[6], self.setup[7]]))
-    }
-
-    fn reads(&self) -> bool {
-        self.setup[0] & 0x80 != 0
-    }
-
-    pub(super) fn is_set_configuration(&self) -> bool {
-        self.setup[..2] == [0x00, 0x09]
-    }
-}
-
-/// How a request ended.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Outcome {
-    /// Done; with what was read.
-    Done(Vec<u8>),
-    /// Refused by the device.
-    Stalled,
-    /// The device did not answer.
-    Failed(&'static str),
-}
-
-/// What one transaction did to the transfer.
-pub(super) enum Progress {
-    /// It went on; this many bytes crossed the wire.
-    Moved(usize),
-    /// NAK: try again soon.
-    Wait,
-    /// No handshake: try again in the next frame.
-    Lost,
-    /// It is over.
-    Ended(Outcome),
-}
+/// The host's drivers need a while before the next request.
+const BETWEEN_REQUESTS: Ticks = 100 * MICROSECOND;
+/// How long a request may be NAKed (USB 2.0, 9.2.6.1: no command takes more than 5 s).
+const PATIENCE: Ticks = 5 * SECOND;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
@@ -83,126 +22,280 @@ enum Stage {
 
 /// A request on its way.
 #[derive(Debug, Clone)]
-pub(super) struct Transfer {
-    request: Request,
+struct Running {
     stage: Stage,
     toggle: bool,
-    moved: usize,
+    sent: usize,
     received: Vec<u8>,
-    lost: u8,
+    tries: u8,
     deadline: Ticks,
 }
 
-/// Endpoint 0's packet size; the tracker and Teensyduino both use the largest.
-const PACKET: usize = 64;
+/// Endpoint 0.
+#[derive(Debug, Clone)]
+pub(super) struct ControlPipe {
+    queue: VecDeque<(Ticket, Request)>,
+    running: Option<Running>,
+    /// bMaxPacketSize0.
+    pub packet: usize,
+    /// Not tried before this time.
+    pub ready_at: Ticks,
+    /// The device has just got its address and has not answered there yet.
+    pub fresh_address: bool,
+}
 
-impl Transfer {
-    pub(super) fn new(request: Request, now: Ticks) -> Transfer {
-        Transfer {
-            request,
+/// A request that has ended.
+pub(super) type Ended = (Ticket, Request, Outcome);
+
+impl ControlPipe {
+    /// The pipe of a device of which nothing is known yet.
+    pub fn new() -> ControlPipe {
+        ControlPipe {
+            queue: VecDeque::new(),
+            running: None,
+            packet: 64,
+            ready_at: 0,
+            fresh_address: false,
+        }
+    }
+
+    /// Queues a request.
+    pub fn submit(&mut self, ticket: Ticket, request: Request) {
+        self.queue.push_back((ticket, request));
+    }
+
+    /// Gives a request up; whether there was one.
+    pub fn cancel(&mut self, ticket: Ticket) -> bool {
+        let before = self.queue.len();
+        if self
+            .queue
+            .front()
+            .is_some_and(|&(first, _)| first == ticket)
+        {
+            self.running = None;
+        }
+        self.queue.retain(|&(queued, _)| queued != ticket);
+        self.queue.len() != before
+    }
+
+    /// Gives all requests up.
+    pub fn clear(&mut self) -> impl Iterator<Item = Ticket> {
+        self.running = None;
+        std::mem::take(&mut self.queue)
+            .into_iter()
+            .map(|(ticket, _)| ticket)
+    }
+
+    /// Whether anything is to be done.
+    pub fn is_busy(&self) -> bool {
+        !self.queue.is_empty()
+    }
+
+    /// Does the next transaction; returns the bytes that crossed the wire, and what has ended.
+    pub fn transact(&mut self, wire: &mut Wire<'_>) -> (usize, Option<Ended>) {
+        let Some((_, request)) = self.queue.front() else {
+            return (0, None);
+        };
+        let running = self
+            .running
+            .get_or_insert_with(|| Running::new(wire.now + PATIENCE));
+        let token = running.token(request, self.packet);
+        let answer = match wire.transact(0, &token, running.tries > 0) {
+            // Only ACK is an answer to a SETUP (USB 2.0, 8.4.6.4).
+            Answer::Stall | Answer::Nak if running.stage == Stage::Setup => Answer::Silence,
+            answer => answer,
+        };
+        let bytes = match (&token, &answer) {
+            (Token::Setup(_), _) => 8,
+            (Token::Out(data, _), _) | (_, Answer::Data(data, _)) => data.len(),
+            _ => 0,
+        };
+        self.ready_at = wire.now;
+        let outcome = match answer {
+            Answer::Silence => {
+                self.ready_at = wire.next_try();
+                running.tries += 1;
+                (running.tries >= TRIES).then(|| {
+                    running.blame(request, self.fresh_address, wire);
+                    Outcome::Failed(Failure::NoAnswer)
+                })
+            }
+            Answer::Nak => {
+                self.ready_at = wire.now + RETRY;
+                (wire.now >= running.deadline).then(|| {
+                    wire.witness.saw(
+                        Trap::UsbRequestTimeout,
+                        format!("request {:02x?} was NAKed for 5 s", request.setup),
+                    );
+                    Outcome::Failed(Failure::NotReady)
+                })
+            }
+            answer => {
+                running.tries = 0;
+                self.fresh_address = false;
+                running.advance(request, self.packet, &token, answer, wire)
+            }
+        };
+        let Some(outcome) = outcome else {
+            return (bytes, None);
+        };
+        self.running = None;
+        self.ready_at = wire.now + BETWEEN_REQUESTS;
+        let ended = self.queue.pop_front();
+        (
+            bytes,
+            ended.map(|(ticket, request)| (ticket, request, outcome)),
+        )
+    }
+}
+
+impl Running {
+    fn new(deadline: Ticks) -> Running {
+        Running {
             stage: Stage::Setup,
             toggle: false,
-            moved: 0,
+            sent: 0,
             received: Vec::new(),
-            lost: 0,
-            deadline: now + 5 * SECOND,
+            tries: 0,
+            deadline,
         }
     }
 
-    /// Does the transfer's next transaction.
-    pub(super) fn step(
-        &mut self,
-        now: Ticks,
-        complaints: &mut Vec<String>,
-        mut transact: impl FnMut(&Token) -> Answer,
-    ) -> Progress {
-        let token = self.token();
-        let answer = transact(&token);
-        match (&answer, self.stage) {
-            (Answer::Silence, _) => {
-                self.lost += 1;
-                // Three transactions without a handshake end a transfer (USB 2.0, 10.2.6).
-                return if self.lost >= 3 {
-                    Progress::Ended(Outcome::Failed("no answer to three tries"))
-                } else {
-                    Progress::Lost
-                };
-            }
-            (Answer::Stall, _) => return Progress::Ended(Outcome::Stalled),
-            (Answer::Nak, _) if now >= self.deadline => {
-                return Progress::Ended(Outcome::Failed("nothing but NAK for 5 s"));
-            }
-            (Answer::Nak, _) => return Progress::Wait,
-            _ => self.lost = 0,
-        }
-        match (answer, token, self.stage) {
-            (Answer::Ack, _, Stage::Setup) => {
-                self.toggle = true;
-                self.stage = if self.request.length() == 0 {
-                    Stage::Status
-                } else {
-                    Stage::Data
-                };
-                Progress::Moved(8)
-            }
-            (Answer::Data(data, toggle), _, Stage::Data) => {
-                if toggle != self.toggle {
-                    complaints.push(format!(
-                        "control data with the wrong toggle in {:02x?}",
-                        self.request.setup
-                    ));
-                    return Progress::Moved(data.len());
-                }
-                self.toggle = !self.toggle;
-                self.received.extend_from_slice(&data);
-                if data.len() < PACKET || self.received.len() >= self.request.length() {
-                    self.stage = Stage::Status;
-                }
-                if self.received.len() > self.request.length() {
-                    complaints.push(format!(
-                        "more data than asked for in {:02x?}",
-                        self.request.setup
-                    ));
-                }
-                Progress::Moved(data.len())
-            }
-            (Answer::Ack, Token::Out(data, _), Stage::Data) => {
-                self.toggle = !self.toggle;
-                self.moved += data.len();
-                if self.moved >= self.request.data.len() {
-                    self.stage = Stage::Status;
-                }
-                Progress::Moved(data.len())
-            }
-            (Answer::Ack, _, Stage::Status) => {
-                Progress::Ended(Outcome::Done(std::mem::take(&mut self.received)))
-            }
-            (Answer::Data(data, toggle), _, Stage::Status) => {
-                if !data.is_empty() || !toggle {
-                    complaints.push(format!(
-                        "a status stage that is not empty DATA1 in {:02x?}",
-                        self.request.setup
-                    ));
-                }
-                Progress::Ended(Outcome::Done(Vec::new()))
-            }
-            _ => Progress::Ended(Outcome::Failed("an answer out of place")),
-        }
-    }
-
-    fn token(&self) -> Token {
+    fn token(&self, request: &Request, packet: usize) -> Token {
         match self.stage {
-            Stage::Setup => Token::Setup(self.request.setup),
-            Stage::Data if self.request.reads() => Token::In,
+            Stage::Setup => Token::Setup(request.setup),
+            Stage::Data if request.reads() => Token::In,
             Stage::Data => {
-                let rest = &self.request.data[self.moved..];
-                Token::Out(rest[..rest.len().min(PACKET)].to_vec(), self.toggle)
+                let rest = &request.data[self.sent..];
+                Token::Out(rest[..rest.len().min(packet)].to_vec(), self.toggle)
             }
             // The status stage runs against the data's direction and is always DATA1 (8.5.3.1).
-            Stage::Status if self.request.reads() && self.request.length() > 0 => {
+            Stage::Status if request.reads() && request.length() > 0 => {
                 Token::Out(Vec::new(), true)
             }
             Stage::Status => Token::In,
         }
+    }
+
+    /// Takes an answer in; tells how the request ended, if it did.
+    fn advance(
+        &mut self,
+        request: &Request,
+        packet: usize,
+        token: &Token,
+        answer: Answer,
+        wire: &mut Wire<'_>,
+    ) -> Option<Outcome> {
+        match (answer, self.stage) {
+            (Answer::Stall, _) => Some(Outcome::Stalled),
+            (Answer::Ack, Stage::Setup) => {
+                self.toggle = true;
+                self.stage = if request.length() == 0 {
+                    Stage::Status
+                } else {
+                    Stage::Data
+                };
+                None
+            }
+            (Answer::Data(data, toggle), Stage::Data) => {
+                self.receive(request, packet, &data, toggle, wire)
+            }
+            (Answer::Ack, Stage::Data) => {
+                if let Token::Out(data, _) = token {
+                    self.sent += data.len();
+                }
+                self.toggle = !self.toggle;
+                if self.sent >= request.data.len() {
+                    self.stage = Stage::Status;
+                }
+                None
+            }
+            (Answer::Ack, Stage::Status) => Some(Outcome::Done(std::mem::take(&mut self.received))),
+            (Answer::Data(data, toggle), Stage::Status) => {
+                if !data.is_empty() || !toggle {
+                    wire.witness.saw(
+                        Trap::UsbStatusStage,
+                        format!(
+                            "request {:02x?}: its status stage is DATA{} with {} bytes",
+                            request.setup,
+                            u8::from(toggle),
+                            data.len()
+                        ),
+                    );
+                }
+                Some(Outcome::Done(Vec::new()))
+            }
+            _ => Some(Outcome::Failed(Failure::OutOfPlace)),
+        }
+    }
+
+    fn receive(
+        &mut self,
+        request: &Request,
+        packet: usize,
+        data: &[u8],
+        toggle: bool,
+        wire: &mut Wire<'_>,
+    ) -> Option<Outcome> {
+        if toggle != self.toggle {
+            wire.witness.saw(
+                Trap::UsbToggle,
+                format!(
+                    "request {:02x?}: DATA{} where DATA{} is due; the host drops it as a repetition",
+                    request.setup,
+                    u8::from(toggle),
+                    u8::from(self.toggle)
+                ),
+            );
+            return None;
+        }
+        self.toggle = !self.toggle;
+        self.received.extend_from_slice(data);
+        if data.len() > packet || self.received.len() > request.length() {
+            wire.witness.saw(
+                Trap::UsbTooMuchData,
+                format!(
+                    "request {:02x?}: a packet of {} bytes after {} of {} bytes, on an endpoint for {packet}",
+                    request.setup,
+                    data.len(),
+                    self.received.len() - data.len(),
+                    request.length()
+                ),
+            );
+            return Some(Outcome::Failed(Failure::TooMuch));
+        }
+        if data.len() < packet || self.received.len() == request.length() {
+            self.stage = Stage::Status;
+        }
+        None
+    }
+
+    /// Says why the device may be silent.
+    fn blame(&self, request: &Request, fresh_address: bool, wire: &mut Wire<'_>) {
+        let (trap, why) = match self.stage {
+            Stage::Setup if fresh_address => (
+                Trap::UsbAddressLate,
+                format!(
+                    "the device does not answer at address {}; its ADDR is {}",
+                    wire.address,
+                    wire.device.address()
+                ),
+            ),
+            Stage::Setup => (
+                Trap::UsbSetupLost,
+                format!(
+                    "SETUP {:02x?} was sent three times in three frames and not taken",
+                    request.setup
+                ),
+            ),
+            stage => (
+                Trap::UsbNoAnswer,
+                format!(
+                    "request {:02x?}: three tokens of its {stage:?} stage have no answer",
+                    request.setup
+                ),
+            ),
+        };
+        wire.witness.saw(trap, why);
     }
 }

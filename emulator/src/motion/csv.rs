@@ -12,6 +12,7 @@
 //! | `t` | time, strictly increasing | s | `t_s`, `t_ms`, `t_us` |
 //! | `gx`, `gy`, `gz` | angular rate about the body axes | rad/s | `gx_rad` … (rad/s), `gx_dps` … (°/s) |
 //! | `ax`, `ay`, `az` | specific force along the body axes | m/s² | `ax_ms2` … (m/s²), `ax_g` … (9.80665 m/s²) |
+//! | `mx`, `my`, `mz` | optional magnetic flux density along the body axes | µT | `mx_ut` … |
 //! | `qw`, `qx`, `qy`, `qz` | optional truth body → world, y up | – | – |
 //!
 //! Columns come in any order, in upper or lower case; others are ignored. Blank lines and everything
@@ -29,12 +30,16 @@ const STANDARD_GRAVITY: f64 = 9.806_65;
 pub(super) const LARGEST: f64 = 1.0e9;
 
 /// What a column can hold, in the order in which a row is kept.
-const QUANTITIES: [&str; 11] = [
-    "t", "gx", "gy", "gz", "ax", "ay", "az", "qw", "qx", "qy", "qz",
+const QUANTITIES: [&str; 14] = [
+    "t", "gx", "gy", "gz", "ax", "ay", "az", "qw", "qx", "qy", "qz", "mx", "my", "mz",
 ];
 
 /// Time, rates and forces: the quantities no table can do without.
 const REQUIRED: usize = 7;
+
+/// The quantities that come all together or not at all: the truth and the magnetic field.
+const TRUTH: std::ops::Range<usize> = 7..11;
+const FIELD: std::ops::Range<usize> = 11..14;
 
 /// Where each quantity stands in a row, and what turns it into the unit of [`Instant`].
 struct Columns {
@@ -104,12 +109,14 @@ impl Columns {
         if !absent.is_empty() {
             return Err(wrong(format!("there is no column {}", absent.join(", "))));
         }
-        let absent = missing(REQUIRED..QUANTITIES.len());
-        if !absent.is_empty() && absent.len() < 4 {
-            return Err(wrong(format!(
-                "the truth lacks the column {}",
-                absent.join(", ")
-            )));
+        for (name, columns) in [("truth", TRUTH), ("magnetic field", FIELD)] {
+            let absent = missing(columns.clone());
+            if !absent.is_empty() && absent.len() < columns.len() {
+                return Err(wrong(format!(
+                    "the {name} lacks the column {}",
+                    absent.join(", ")
+                )));
+            }
         }
         Ok(Self { places, width })
     }
@@ -142,12 +149,13 @@ impl Columns {
                 values[quantity] = value * factor;
             }
         }
-        let [t, gx, gy, gz, ax, ay, az, truth @ ..] = values;
-        let truth = match self.places[REQUIRED] {
+        let [t, gx, gy, gz, ax, ay, az, qw, qx, qy, qz, field @ ..] = values;
+        let truth = [qw, qx, qy, qz];
+        let truth = match self.places[TRUTH.start] {
             None => None,
             Some(_) => Some(normalized(truth).ok_or_else(|| MotionError::Text {
                 line,
-                column: self.character(row, REQUIRED),
+                column: self.character(row, TRUTH.start),
                 problem: format!("{truth:?} is not a unit quaternion w, x, y, z"),
             })?),
         };
@@ -156,7 +164,7 @@ impl Columns {
             Instant {
                 rate: [gx, gy, gz],
                 force: [ax, ay, az],
-                field: None,
+                field: self.places[FIELD.start].map(|_| field),
                 truth,
             },
         ))
@@ -192,6 +200,7 @@ fn quantity(name: &str) -> Option<(usize, f64)> {
         (1..=3, "dps") => 1.0_f64.to_radians(),
         (4..=6, "ms2") => 1.0,
         (4..=6, "g") => STANDARD_GRAVITY,
+        (11..=13, "ut") => 1.0,
         _ => return None,
     };
     Some((quantity, factor))

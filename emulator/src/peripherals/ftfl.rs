@@ -1,75 +1,295 @@
-//! Flash memory module (K20 manual, chapter 28), as far as a program that only reads its serial number needs it.
+//! Flash memory module (K20 manual, chapter "Flash Memory Module (FTFL)"): registers, command launch, FlexRAM and the
+//! EEPROM that it emulates. What the commands do is in `commands`, the memories are in `memory`.
+
+mod commands;
+
+mod memory;
+
+use crate::time::{NEVER, Ticks};
+use crate::witness::{Trap, Witness};
+use commands::{Effect, Failure};
+pub use memory::{FLEXNVM_BASE, FLEXRAM_BASE, Memory};
 
 const FSTAT: usize = 0x00;
 const FCNFG: usize = 0x01;
 const FSEC: usize = 0x02;
 const FOPT: usize = 0x03;
-/// FCCOB3..0, FCCOB7..4, FCCOBB..8 stand byte-swapped within each word from here on (28.34.6).
+/// FCCOB3..0, FCCOB7..4, FCCOBB..8 stand byte-swapped within each word from here on.
 const FCCOB: usize = 0x04;
+const FPROT: usize = 0x10;
+const FEPROT: usize = 0x16;
+const FDPROT: usize = 0x17;
 
-const CCIF: u8 = 0x80;
-const ACCERR: u8 = 0x20;
-const READ_ONCE: u8 = 0x41;
-/// The record in which PJRC's factory programming leaves a board's serial number.
-const SERIAL_RECORD: u8 = 0x0F;
+const CCIF: u8 = 1 << 7;
+const RDCOLERR: u8 = 1 << 6;
+const ACCERR: u8 = 1 << 5;
+const FPVIOL: u8 = 1 << 4;
+const MGSTAT0: u8 = 1 << 0;
 
-/// The flash controller's registers.
+const CCIE: u8 = 1 << 7;
+const RDCOLLIE: u8 = 1 << 6;
+const RAMRDY: u8 = 1 << 1;
+const EEERDY: u8 = 1 << 0;
+
+/// The command that runs.
+#[derive(Debug, Clone)]
+struct Running {
+    until: Ticks,
+    effect: Effect,
+    /// Program flash cannot be read meanwhile.
+    hides_flash: bool,
+}
+
+/// The flash controller with its memories.
 #[derive(Debug, Clone)]
 pub struct FlashController {
     registers: [u8; 0x18],
-    serial_number: u32,
+    running: Option<Running>,
+    /// Key verification failed: no further attempt before a reset.
+    key_refused: bool,
+    /// Program flash, FlexNVM and what is written once.
+    pub memory: Memory,
 }
 
 impl FlashController {
-    /// The state after reset, for a board with this serial number and these configuration bytes in its flash.
-    pub fn new(serial_number: u32, security: u8, option: u8) -> FlashController {
+    /// The state after a system reset of a chip with these memories.
+    pub fn new(mut memory: Memory) -> FlashController {
         let mut registers = [0; 0x18];
         registers[FSTAT] = CCIF;
-        registers[FCNFG] = 0x02; // RAMRDY: FlexRAM is plain RAM
-        registers[FSEC] = security;
-        registers[FOPT] = option;
-        registers[0x10..].fill(0xFF); // no protection
+        registers[FCNFG] = if memory.eeprom_size() > 0 {
+            EEERDY
+        } else {
+            RAMRDY
+        };
+        // Loaded from the flash configuration field during reset.
+        let field = |offset: usize| memory.program[0x400 + offset];
+        registers[FSEC] = field(0xC);
+        registers[FOPT] = field(0xD);
+        for (register, offset) in (FPROT..).zip(0x8..0xC) {
+            // FPROT3..0 stand at 0x10 to 0x13, the field holds them in the same order.
+            registers[register] = field(offset);
+        }
+        registers[0x14..FEPROT].fill(0xFF);
+        registers[FEPROT] = field(0xE);
+        registers[FDPROT] = field(0xF);
+        memory.reload_flexram();
         FlashController {
             registers,
-            serial_number,
+            running: None,
+            key_refused: false,
+            memory,
         }
+    }
+
+    /// A system reset: the memories keep their contents.
+    pub fn reset(&mut self) {
+        *self = FlashController::new(self.memory.clone());
+    }
+
+    /// Whether the processor cannot read program flash now, because a command works on it.
+    pub fn hides_flash(&self) -> bool {
+        self.running
+            .as_ref()
+            .is_some_and(|running| running.hides_flash)
+    }
+
+    /// When the running command ends.
+    pub fn next_event(&self) -> Ticks {
+        self.running.as_ref().map_or(NEVER, |running| running.until)
+    }
+
+    /// Ends the running command if its time has come.
+    pub fn advance(&mut self, now: Ticks) {
+        let Some(running) = self.running.take_if(|running| running.until <= now) else {
+            return;
+        };
+        match running.effect {
+            Effect::Nothing => {}
+            Effect::Return(bytes) => self.registers[FCCOB + 4..FCCOB + 8].copy_from_slice(&bytes),
+            Effect::VerifyFailed => self.registers[FSTAT] |= MGSTAT0,
+            Effect::FlexRam { eeprom } => {
+                self.registers[FCNFG] &= !(RAMRDY | EEERDY);
+                self.registers[FCNFG] |= if eeprom { EEERDY } else { RAMRDY };
+            }
+            Effect::EepromWritten => self.registers[FCNFG] |= EEERDY,
+            Effect::Unsecured => self.registers[FSEC] = self.registers[FSEC] & !3 | 2,
+            Effect::Erased => {
+                self.registers[FSEC] = self.registers[FSEC] & !3 | 2;
+                self.registers[FCNFG] = self.registers[FCNFG] & !EEERDY | RAMRDY;
+            }
+        }
+        self.registers[FSTAT] |= CCIF;
+    }
+
+    /// Whether "command complete" asks for its interrupt.
+    pub fn complete_interrupt(&self) -> bool {
+        self.registers[FCNFG] & CCIE != 0 && self.registers[FSTAT] & CCIF != 0
+    }
+
+    /// Whether "read collision" asks for its interrupt.
+    pub fn collision_interrupt(&self) -> bool {
+        self.registers[FCNFG] & RDCOLLIE != 0 && self.registers[FSTAT] & RDCOLERR != 0
+    }
+
+    /// FCCOB`n`, for n from 0 to 11.
+    fn object(&self, n: usize) -> u8 {
+        self.registers[FCCOB + (n ^ 3)]
     }
 
     /// Reads `width` bytes; the command object is commonly read as a word.
     pub fn read(&self, offset: u32, width: u8) -> u32 {
+        let byte = |at: usize| u32::from(self.registers.get(at).copied().unwrap_or(0));
         (0..usize::from(width))
-            .map(|i| {
-                u32::from(
-                    self.registers
-                        .get(offset as usize + i)
-                        .copied()
-                        .unwrap_or(0),
-                ) << (8 * i)
-            })
+            .map(|i| byte(offset as usize + i) << (8 * i))
             .sum()
     }
 
-    /// Writes an 8-bit register; writing CCIF launches the command.
-    pub fn write(&mut self, offset: u32, value: u8) {
-        match offset as usize {
+    /// Writes `width` bytes; writing CCIF launches the command.
+    pub fn write(&mut self, offset: u32, width: u8, value: u32, now: Ticks, witness: &mut Witness) {
+        for (at, byte) in (offset as usize..).zip(&value.to_le_bytes()[..usize::from(width.min(4))])
+        {
+            self.write_byte(at, *byte, now, witness);
+        }
+    }
+
+    fn write_byte(&mut self, at: usize, value: u8, now: Ticks, witness: &mut Witness) {
+        let busy = self.running.is_some();
+        match at {
             FSTAT => {
-                self.registers[FSTAT] &= !(value & 0x70);
-                if value & CCIF != 0 && self.registers[FSTAT] & 0x30 == 0 {
-                    self.launch();
+                if value & CCIF != 0 && busy {
+                    witness.saw(Trap::FlashBusy, "a command is launched while another runs");
+                }
+                // A launch needs the error flags clear before the write (command write sequence).
+                let blocked = self.registers[FSTAT] & (ACCERR | FPVIOL) != 0;
+                self.registers[FSTAT] &= !(value & (RDCOLERR | ACCERR | FPVIOL));
+                if value & CCIF != 0 && blocked {
+                    witness.saw(
+                        Trap::FlashErrorFlags,
+                        "a command is launched while ACCERR or FPVIOL is set",
+                    );
+                } else if value & CCIF != 0 && !busy {
+                    self.launch(now, witness);
                 }
             }
+            // Only CCIE, RDCOLLIE and the suspend request are writable; suspending is not modelled.
+            FCNFG => {
+                self.registers[FCNFG] = self.registers[FCNFG] & 0x3F | value & (CCIE | RDCOLLIE)
+            }
             FSEC | FOPT => {}
-            register if register < self.registers.len() => self.registers[register] = value,
+            FCCOB..FPROT if busy => {
+                witness.saw(
+                    Trap::FlashBusy,
+                    "FCCOB is written while a command runs; the write is ignored",
+                );
+            }
+            // Protection can only be added in normal mode: a bit that is 0 stays 0.
+            FPROT..0x14 | FEPROT | FDPROT => self.registers[at] &= value,
+            at if at < FPROT => self.registers[at] = value,
             _ => {}
         }
     }
 
-    fn launch(&mut self) {
-        let (command, record) = (self.registers[FCCOB + 3], self.registers[FCCOB + 2]);
-        if command == READ_ONCE && record == SERIAL_RECORD {
-            self.registers[FCCOB + 4..FCCOB + 8].copy_from_slice(&self.serial_number.to_le_bytes());
-        } else {
-            self.registers[FSTAT] |= ACCERR;
+    fn launch(&mut self, now: Ticks, witness: &mut Witness) {
+        self.registers[FSTAT] &= !MGSTAT0;
+        match self.command(witness) {
+            Ok(command) => {
+                self.registers[FSTAT] &= !CCIF;
+                self.running = Some(Running {
+                    until: now + command.takes,
+                    effect: command.effect,
+                    hides_flash: command.hides_flash,
+                });
+            }
+            Err(Failure::Access(why)) => {
+                self.registers[FSTAT] |= ACCERR;
+                let code = self.object(0);
+                witness.saw(
+                    Trap::FlashCommand,
+                    format!("flash command {code:#04x} is refused: {why}"),
+                );
+            }
+            Err(Failure::Protected(address)) => {
+                self.registers[FSTAT] |= FPVIOL;
+                let code = self.object(0);
+                witness.saw(
+                    Trap::FlashProtected,
+                    format!("flash command {code:#04x} at {address:#08x}"),
+                );
+            }
         }
+    }
+
+    /// The processor or a bus master reads program flash while a command works on it.
+    pub fn collide(&mut self, address: u32, witness: &mut Witness) {
+        self.registers[FSTAT] |= RDCOLERR;
+        witness.saw(
+            Trap::FlashReadWhileWrite,
+            format!(
+                "{address:#010x} is read while flash command {:#04x} runs",
+                self.object(0)
+            ),
+        );
+    }
+
+    /// Reads `width` bytes of FlexRAM or FlexNVM; `None` is a bus fault.
+    pub fn read_flex(&mut self, address: u32, width: u8, witness: &mut Witness) -> Option<u32> {
+        if address >= FLEXRAM_BASE && !self.flexram_ready() {
+            let what = format!("FlexRAM is read at {address:#010x} while EEERDY is 0");
+            witness.saw(Trap::EepromNotReady, what);
+        }
+        self.memory.read_flex(address, width)
+    }
+
+    fn flexram_ready(&self) -> bool {
+        self.registers[FCNFG] & (EEERDY | RAMRDY) != 0
+    }
+
+    /// Writes `width` bytes of FlexRAM; in EEPROM mode that starts the write of a record. `false` is a bus fault.
+    pub fn write_flex(
+        &mut self,
+        address: u32,
+        width: u8,
+        value: u32,
+        now: Ticks,
+        witness: &mut Witness,
+    ) -> bool {
+        if address < FLEXRAM_BASE {
+            witness.saw(
+                Trap::FlashStore,
+                format!("a store to FlexNVM at {address:#010x}"),
+            );
+            return false;
+        }
+        if self.registers[FCNFG] & RAMRDY != 0 {
+            return self.memory.write_flexram(address, width, value);
+        }
+        let (offset, size) = ((address - FLEXRAM_BASE) as usize, self.memory.eeprom_size());
+        if !self.flexram_ready() || self.running.is_some() {
+            let what = format!("FlexRAM is written at {address:#010x} while EEERDY or CCIF is 0");
+            witness.saw(Trap::EepromNotReady, what);
+        } else if self.registers[FSTAT] & (ACCERR | FPVIOL) != 0 {
+            let what = "an EEPROM write is ignored: ACCERR or FPVIOL is set";
+            witness.saw(Trap::FlashErrorFlags, what);
+        } else if offset + usize::from(width) > size {
+            let what = format!("EEPROM write at offset {offset:#x}, beyond its {size} bytes");
+            witness.saw(Trap::EepromNotReady, what);
+        } else if self.registers[FEPROT] >> (offset * 8 / size) & 1 == 0 {
+            self.registers[FSTAT] |= FPVIOL;
+            witness.saw(
+                Trap::FlashProtected,
+                format!("EEPROM write at offset {offset:#x}, which FEPROT protects"),
+            );
+        } else {
+            self.memory.write_flexram(address, width, value);
+            self.memory.keep_eeprom();
+            self.registers[FSTAT] &= !CCIF;
+            self.registers[FCNFG] &= !EEERDY;
+            self.running = Some(Running {
+                until: now + commands::eeprom_write_time(width),
+                effect: Effect::EepromWritten,
+                hides_flash: false,
+            });
+        }
+        true
     }
 }

@@ -156,6 +156,23 @@ impl ClockGenerator {
         }
     }
 
+    /// MCGFFCLK, the FLL's reference: the crystal behind FRDIV, or the slow internal clock.
+    pub fn fixed_hz(&self, now: Ticks) -> u32 {
+        if self.registers[C1] & IREFS != 0 || !self.crystal_runs(now) {
+            return SLOW_IRC_HZ;
+        }
+        self.fll_reference()
+    }
+
+    /// MCGIRCLK: the slow internal clock, or half the fast one (FCRDIV is not looked at).
+    pub fn internal_hz(&self) -> u32 {
+        if self.registers[C2] & 1 != 0 {
+            FAST_IRC_HZ / 2
+        } else {
+            SLOW_IRC_HZ
+        }
+    }
+
     /// The FLL's output: 640 times its reference, or more by C4 (MCG_C4[DRST_DRS]).
     fn fll_hz(&self, now: Ticks) -> u32 {
         let external = self.registers[C1] & IREFS == 0 && self.crystal_runs(now);

@@ -1,4 +1,5 @@
-//! Ports and GPIO (K20 manual, chapters 11 and 49), and the two wires of the sensor bus with their pull-ups.
+//! Ports and GPIO (K20 manual, chapters 11 and 49): directions, levels, pulls and pin interrupts; and the two wires of
+//! the sensor bus with their pull-ups.
 //!
 //! I2C0 reaches two pairs of port B's pins: PTB2 and PTB3, to which the board's sensor and its pull-ups are soldered,
 //! and PTB0 and PTB1, to which nothing is.
@@ -15,11 +16,91 @@ const MUX_I2C: u32 = 2;
 /// PORTx_PCRn: pull enabled, and upwards.
 const PULL_UP: u32 = 0b11;
 
+/// Pin control: pull direction, pull enable, open drain, and the interrupt flag.
+const PS: u32 = 1 << 0;
+const PE: u32 = 1 << 1;
+const ODE: u32 = 1 << 5;
+const ISF: u32 = 1 << 24;
+
+/// Registers of a port behind its pin control registers: global pin control, interrupt flags.
+const GPCLR: u32 = 0x80;
+const GPCHR: u32 = 0x84;
+const ISFR: u32 = 0xA0;
+
 #[derive(Debug, Clone, Default)]
 struct Port {
     control: [u32; 32],
     output: u32,
     direction: u32,
+    /// Pins that raise a flag, and the levels that were seen there last.
+    watched: u32,
+    seen: u32,
+    flags: u32,
+    /// Pins that something outside drives, and to which level.
+    driven: u32,
+    driven_high: u32,
+    /// Levels that peripherals put out.
+    peripheral: u32,
+}
+
+impl Port {
+    fn mux(&self, bit: u32) -> u32 {
+        self.control[bit as usize] >> 8 & 7
+    }
+
+    /// Level of a pin: its own output, else what drives it from outside, else its pull, else low.
+    fn level(&self, bit: u32) -> bool {
+        let control = self.control[bit as usize];
+        let at = |register: u32| register >> bit & 1 != 0;
+        let undriven = if at(self.driven) {
+            at(self.driven_high)
+        } else {
+            control & (PE | PS) == PE | PS
+        };
+        match self.mux(bit) {
+            MUX_GPIO if at(self.direction) && (control & ODE == 0 || !at(self.output)) => {
+                at(self.output)
+            }
+            0 | MUX_GPIO => undriven,
+            _ => at(self.peripheral) || undriven,
+        }
+    }
+
+    /// Raises the flags of edges and levels (PCR[IRQC]).
+    fn look(&mut self) {
+        for bit in (0..32).filter(|&bit| self.watched >> bit & 1 != 0) {
+            let (before, now) = (self.seen >> bit & 1 != 0, self.level(bit));
+            let raised = match self.control[bit as usize] >> 16 & 0xF {
+                1 | 9 => now && !before,
+                2 | 0xA => before && !now,
+                3 | 0xB => before != now,
+                8 => !now,
+                0xC => now,
+                _ => false,
+            };
+            self.flags |= u32::from(raised) << bit;
+            self.seen = self.seen & !(1 << bit) | u32::from(now) << bit;
+        }
+    }
+
+    fn set_control(&mut self, bit: u32, value: u32) {
+        if value & ISF != 0 {
+            self.flags &= !(1 << bit);
+        }
+        let old = std::mem::replace(&mut self.control[bit as usize], value & !ISF);
+        let watched = value >> 16 & 0xF != 0;
+        self.watched = self.watched & !(1 << bit) | u32::from(watched) << bit;
+        if old >> 16 & 0xF == 0 {
+            // What the pin is at when its interrupt is switched on is no edge.
+            self.seen = self.seen & !(1 << bit) | u32::from(self.level(bit)) << bit;
+        }
+    }
+
+    /// Flags of pins whose IRQC asks for an interrupt, or for DMA.
+    fn asking(&self, dma: bool) -> bool {
+        let kind = |bit: u32| self.control[bit as usize] >> 16 & 0xF;
+        (0..32).any(|bit| self.flags >> bit & 1 != 0 && (kind(bit) < 8) == dma && kind(bit) != 0)
+    }
 }
 
 /// Ports A to E.
@@ -46,11 +127,60 @@ pub enum Wiring {
 impl Pins {
     /// After a system reset; what is wired to the pins stays as it is.
     pub fn reset(&mut self) {
-        self.ports = Default::default();
+        for port in &mut self.ports {
+            *port = Port {
+                driven: port.driven,
+                driven_high: port.driven_high,
+                ..Port::default()
+            };
+        }
+    }
+
+    /// Drives a pin from outside, or lets go of it.
+    pub fn drive(&mut self, port: usize, bit: u32, level: Option<bool>) {
+        let port = &mut self.ports[port];
+        port.driven = port.driven & !(1 << bit) | u32::from(level.is_some()) << bit;
+        port.driven_high = port.driven_high & !(1 << bit) | u32::from(level == Some(true)) << bit;
+        port.look();
+    }
+
+    /// What a peripheral puts out on a pin that is connected to it.
+    pub fn set_peripheral_level(&mut self, port: usize, bit: u32, level: bool) {
+        let port = &mut self.ports[port];
+        port.peripheral = port.peripheral & !(1 << bit) | u32::from(level) << bit;
+    }
+
+    /// Level of a pin.
+    pub fn level(&self, port: usize, bit: u32) -> bool {
+        match (port, bit) {
+            (PORT_B, SCL) => self.scl(),
+            (PORT_B, SDA) => self.sda(),
+            _ => self.ports[port].level(bit),
+        }
+    }
+
+    /// Which peripheral a pin is connected to (MUX of its PCR).
+    pub fn function(&self, port: usize, bit: u32) -> u32 {
+        self.ports[port].mux(bit)
+    }
+
+    /// Whether port `index` asks for its interrupt.
+    pub fn interrupt(&self, index: usize) -> bool {
+        self.ports[index].flags != 0 && self.ports[index].asking(false)
+    }
+
+    /// Whether port `index` asks for DMA.
+    pub fn dma_request(&self, index: usize) -> bool {
+        self.ports[index].flags != 0 && self.ports[index].asking(true)
+    }
+
+    /// A DMA transfer for port `index` has ended, which clears its flags.
+    pub fn dma_done(&mut self, index: usize) {
+        self.ports[index].flags = 0;
     }
 
     fn mux(&self, bit: u32) -> u32 {
-        self.ports[PORT_B].control[bit as usize] >> 8 & 7
+        self.ports[PORT_B].mux(bit)
     }
 
     /// Whether both bus pins are connected to I2C0.
@@ -79,6 +209,17 @@ impl Pins {
         }
     }
 
+    /// What I2C1 sees of its pins, PTC10 and PTC11, in the place of the sensor bus's: nothing pulls them up.
+    pub fn second_bus(&self) -> Pins {
+        let mut pins = Pins {
+            no_pull_ups: true,
+            ..Pins::default()
+        };
+        pins.ports[PORT_B].control[SCL as usize] = self.ports[2].control[10];
+        pins.ports[PORT_B].control[SDA as usize] = self.ports[2].control[11];
+        pins
+    }
+
     fn driven_low(&self, bit: u32) -> bool {
         let port = &self.ports[PORT_B];
         self.mux(bit) == MUX_GPIO && port.direction >> bit & 1 != 0 && port.output >> bit & 1 == 0
@@ -100,19 +241,35 @@ impl Pins {
 
     /// Reads a pin control register of port `index`.
     pub fn read_port(&self, index: usize, offset: u32) -> u32 {
-        if offset < 0x80 {
-            self.ports[index].control[offset as usize / 4]
-        } else {
-            0
+        let port = &self.ports[index];
+        match offset {
+            0..GPCLR => {
+                let bit = offset / 4;
+                port.control[bit as usize] | if port.flags >> bit & 1 != 0 { ISF } else { 0 }
+            }
+            ISFR => port.flags,
+            _ => 0,
         }
     }
 
     /// Writes a pin control register of port `index`.
     pub fn write_port(&mut self, index: usize, offset: u32, value: u32) {
         let scl_before = self.scl();
-        if offset < 0x80 {
-            self.ports[index].control[offset as usize / 4] = value & !(1 << 24);
+        let port = &mut self.ports[index];
+        match offset {
+            0..GPCLR => port.set_control(offset / 4, value),
+            // The lower half of the control register, for all pins named in the upper half of the value.
+            GPCLR | GPCHR => {
+                let first = if offset == GPCLR { 0 } else { 16 };
+                for bit in (0..16).filter(|bit| value >> (16 + bit) & 1 != 0) {
+                    let control = port.control[first + bit];
+                    port.set_control((first + bit) as u32, control & 0xFFFF_0000 | value & 0xFFFF);
+                }
+            }
+            ISFR => port.flags &= !value,
+            _ => {}
         }
+        port.look();
         self.clock(scl_before);
     }
 
@@ -124,13 +281,11 @@ impl Pins {
         };
         match offset % 0x40 {
             0x00 => port.output,
-            0x10 if index == PORT_B => {
-                let driven = port.output & port.direction;
-                driven & !(1 << SCL | 1 << SDA)
-                    | u32::from(self.scl()) << SCL
-                    | u32::from(self.sda()) << SDA
-            }
-            0x10 => port.output & port.direction,
+            // Pins without a digital function read 0.
+            0x10 => (0..32)
+                .filter(|&bit| self.ports[index].mux(bit) != 0 && self.level(index, bit))
+                .map(|bit| 1 << bit)
+                .sum(),
             0x14 => port.direction,
             _ => 0,
         }
@@ -150,6 +305,7 @@ impl Pins {
             0x14 => port.direction = value,
             _ => {}
         }
+        port.look();
         self.clock(scl_before);
     }
 
@@ -159,4 +315,47 @@ impl Pins {
             self.sda_held_for = self.sda_held_for.saturating_sub(1);
         }
     }
+}
+
+/// Port and bit of the board's pins 0 to 33, as its schematic has them.
+const BOARD: [(usize, u32); 34] = [
+    (1, 16),
+    (1, 17),
+    (3, 0),
+    (0, 12),
+    (0, 13),
+    (3, 7),
+    (3, 4),
+    (3, 2),
+    (3, 3),
+    (2, 3),
+    (2, 4),
+    (2, 6),
+    (2, 7),
+    (2, 5),
+    (3, 1),
+    (2, 0),
+    (1, 0),
+    (1, 1),
+    (1, 3),
+    (1, 2),
+    (3, 5),
+    (3, 6),
+    (2, 1),
+    (2, 2),
+    (0, 5),
+    (1, 19),
+    (4, 1),
+    (2, 9),
+    (2, 8),
+    (2, 10),
+    (2, 11),
+    (4, 0),
+    (1, 18),
+    (0, 4),
+];
+
+/// Port (A is 0) and bit of pin `number` of the board.
+pub fn board_pin(number: u8) -> Option<(usize, u32)> {
+    BOARD.get(usize::from(number)).copied()
 }

@@ -13,6 +13,8 @@ struct Channel {
     flag: bool,
     /// When the counter next passes zero, while it runs.
     expires: Option<Ticks>,
+    /// It has passed zero since [`IntervalTimer::take_expired`] was last asked.
+    expired: bool,
 }
 
 /// The timer.
@@ -44,10 +46,16 @@ impl IntervalTimer {
     pub fn advance(&mut self, now: Ticks, bus_hz: u32) {
         for channel in &mut self.channels {
             while let Some(at) = channel.expires.filter(|&at| at <= now) {
-                channel.flag = true;
+                (channel.flag, channel.expired) = (true, true);
                 channel.expires = Some(at + time::of_cycles(u64::from(channel.load) + 1, bus_hz));
             }
         }
+    }
+
+    /// Channels that have passed zero since this was last asked: they trigger DMA channels of the same number.
+    pub fn take_expired(&mut self) -> impl Iterator<Item = usize> {
+        let channels = (0..).zip(&mut self.channels);
+        channels.filter_map(|(n, channel)| std::mem::take(&mut channel.expired).then_some(n))
     }
 
     /// Whether channel `n` asks for its interrupt.

@@ -7,6 +7,7 @@ const SDID: u32 = 0x1024;
 const CLKDIV1: u32 = 0x1044;
 const CLKDIV2: u32 = 0x1048;
 const SCGC1: u32 = 0x1028;
+const FCFG1: u32 = 0x104C;
 const UIDML: u32 = 0x105C;
 const UIDL: u32 = 0x1060;
 
@@ -27,7 +28,7 @@ impl SystemIntegration {
             (0x103C, 0x4000_0001),  // SCGC6: RTC, flash
             (0x1040, 0x0000_0002),  // SCGC7: DMA
             (CLKDIV1, 0x0001_0000), // FOPT.LPBOOT = 1: core /1, bus /1, flash /2
-            (0x104C, 0xFF00_0000),  // FCFG1: 256 KiB program flash
+            (FCFG1, 0xFF0F_0F00),   // 256 KiB program flash, FlexNVM not partitioned
             (0x1050, 0x2F90_0000),  // FCFG2
             (UIDML, 0x5652_4455),
             (UIDL, 0x4923_0001),
@@ -35,6 +36,12 @@ impl SystemIntegration {
         SystemIntegration {
             registers: reset.into(),
         }
+    }
+
+    /// Loads EESIZE and DEPART of FCFG1, which happens during reset.
+    pub fn set_partition(&mut self, fields: u32) {
+        let register = self.register(FCFG1) & !0x000F_0F00 | fields;
+        self.registers.insert(FCFG1, register);
     }
 
     fn register(&self, offset: u32) -> u32 {

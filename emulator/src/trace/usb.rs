@@ -32,6 +32,7 @@ impl Naks {
         match answer {
             Answer::Data(bytes, toggle) => text += &format!(" {} ACK", data(bytes, *toggle)),
             Answer::Ack => text += " ACK",
+            Answer::Dropped => text += " ACK, taken for a repetition",
             Answer::Stall => text += " STALL",
             Answer::Silence => text += &format!(" no answer at address {address}"),
             Answer::Nak => {}

@@ -91,7 +91,7 @@ pub(super) fn states(at: Ticks, happening: &Happening) -> Vec<State> {
                 _ => GAP + HANDSHAKE,
             };
             text += match answer {
-                Answer::Data(..) | Answer::Ack => "_ACK",
+                Answer::Data(..) | Answer::Ack | Answer::Dropped => "_ACK",
                 Answer::Nak => "_NAK",
                 Answer::Stall => "_STALL",
                 Answer::Silence => "_silence",

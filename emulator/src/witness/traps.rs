@@ -206,11 +206,86 @@ traps! {
     /// The buffer descriptor table is not where the controller can find it.
     UsbTableAlignment "usb-table-alignment"
         "the buffer descriptor table has to be aligned to 512 bytes: BDTPAGE holds address bits 31 to 9 (K20 manual, USB, buffer descriptor table)"
+    /// The buffer descriptor table is nowhere.
+    UsbTableOutside "usb-table-outside"
+        "the controller fetches buffer descriptors from the address in BDTPAGE3:BDTPAGE2:BDTPAGE1, which has to be in RAM (K20 manual, USB, buffer descriptor table)"
+    /// A buffer is nowhere.
+    UsbBufferOutside "usb-buffer-outside"
+        "a descriptor's 32-bit buffer address and its byte count have to stay in RAM (K20 manual, USB, buffer descriptor fields)"
+    /// A descriptor was changed under the controller's hands.
+    UsbDescriptorOwned "usb-descriptor-owned"
+        "while OWN is set the program must not change a descriptor, except where no token is processed: TXSUSPENDTOKENBUSY, ODDRST, EPSTALL, a bus reset (K20 manual, USB, buffer descriptor fields)"
+    /// A buffer was given to the controller twice.
+    UsbBufferTwice "usb-buffer-twice"
+        "a buffer is the controller's or the program's: it may be given again only after STAT has shown its token, and to one descriptor (K20 manual, USB, buffer descriptor table and USBx_STAT)"
+    /// A packet from the host does not fit.
+    UsbBufferTooSmall "usb-buffer-too-small"
+        "a packet larger than the descriptor's byte count is cut off and sets ERRSTAT[DMAERR] (K20 manual, USBx_ERRSTAT)"
+    /// Not the toggle that is due.
+    UsbToggle "usb-toggle"
+        "a pipe's packets alternate between DATA0 and DATA1, from DATA0 on after SET_CONFIGURATION, SET_INTERFACE and CLEAR_FEATURE(ENDPOINT_HALT), from DATA1 on after a SETUP (USB 2.0, 8.6, 9.1.1.5 and 9.4.5)"
+    /// A packet larger than its endpoint's.
+    UsbPacketTooLong "usb-packet-too-long"
+        "a packet must not be longer than wMaxPacketSize of its endpoint (USB 2.0, 5.8.3 and 8.4.4)"
+    /// More data than was asked for.
+    UsbTooMuchData "usb-too-much-data"
+        "a device must not return more than wLength bytes, in packets of bMaxPacketSize0 at most (USB 2.0, 5.5.3 and 8.5.3)"
+    /// A status stage that is none.
+    UsbStatusStage "usb-status-stage"
+        "the status stage of a request without data to the host is an empty DATA1 packet (USB 2.0, 8.5.3.1)"
+    /// A SETUP that was never taken.
+    UsbSetupLost "usb-setup-lost"
+        "a device must always accept a SETUP: endpoint 0 needs both directions on, no EPSTALL, no EPCTLDIS, and a receive buffer that the controller owns (USB 2.0, 8.5.3; K20 manual, USBx_ENDPTn)"
+    /// ADDR was written too early.
+    UsbAddressEarly "usb-address-early"
+        "the new address takes effect after the status stage of SET_ADDRESS, which still happens at the old one (USB 2.0, 9.4.6)"
+    /// ADDR was written too late or not at all.
+    UsbAddressLate "usb-address-late"
+        "within 2 ms of the status stage of SET_ADDRESS the device has to answer at its new address (USB 2.0, 9.2.6.3)"
+    /// Nothing but NAK.
+    UsbRequestTimeout "usb-request-timeout"
+        "no request may take longer than 5 s (USB 2.0, 9.2.6.1)"
+    /// An endpoint that is not there.
+    UsbNoAnswer "usb-no-answer"
+        "every endpoint of the active configuration answers each token with data or a handshake: EPTXEN or EPRXEN and EPHSHK have to be set (USB 2.0, 8.4.6; K20 manual, USBx_ENDPTn)"
+    /// A halt that ended by itself.
+    UsbHaltLost "usb-halt-lost"
+        "a halted endpoint answers with STALL until CLEAR_FEATURE(ENDPOINT_HALT), a new configuration or a reset (USB 2.0, 8.4.6 and 9.4.5)"
+    /// A descriptor that no host accepts.
+    UsbDescriptor "usb-descriptor"
+        "lengths, addresses and packet sizes of descriptors are prescribed, and a full-speed device refuses the device qualifier (USB 2.0, 9.6)"
+    /// A device that cannot be enumerated.
+    UsbEnumeration "usb-enumeration"
+        "a device has to answer the requests for its device and configuration descriptors and SET_ADDRESS (USB 2.0, 9.1.2)"
+    /// The device woke its host without leave.
+    UsbWakeUp "usb-wake-up"
+        "a device may signal resume only after SET_FEATURE(DEVICE_REMOTE_WAKEUP) (USB 2.0, 7.1.7.7 and 9.4.9)"
+    /// The controller as a host.
+    UsbHostMode "usb-host-mode"
+        "the board is a device on its only USB port, and host mode is not modelled"
 
     // Sensor.
-    /// A register of the sensor that must not be written.
+    /// A register of the sensor that must be left alone.
     SensorReserved "sensor-reserved"
-        "reserved registers of the MPU-9250 must not be written (register map, section 3)"
+        "reserved registers and values of the MPU-9250 and its AK8963 must not be used (register map, section 3; AK8963 data sheet, 8.1)"
+    /// A register of the sensor that can only be read.
+    SensorReadOnly "sensor-read-only"
+        "a write to a read-only register of the sensor is lost (register map, section 3; AK8963 data sheet, 8.2)"
+    /// The sensor was spoken to while it starts.
+    SensorNotReady "sensor-not-ready"
+        "after H_RESET the sensor does not answer until it has started, 11 ms typically and 100 ms at most (product specification 3.4.2)"
+    /// The sensor's FIFO was read when there is nothing to read.
+    SensorFifo "sensor-fifo"
+        "FIFO_R_W may be read only with FIFO_EN set and while FIFO_COUNT is not 0 (register map 4.33 and 4.37)"
+    /// The sensor no longer listens.
+    SensorLost "sensor-lost"
+        "I2C_IF_DIS, I2C_MST_RST during a transfer and I2CDIS silence a chip until it loses power or is reset (register map 4.33; AK8963 data sheet, 8.3.10)"
+    /// A mode of the magnetometer that cannot be entered like this.
+    MagnetometerMode "magnetometer-mode"
+        "the AK8963 changes its mode through power-down, with 100 µs there, and opens its fuse ROM in a mode of its own (AK8963 data sheet, 5.3.2, 6.3 and 6.4)"
+    /// The magnetometer's data was read without its end.
+    MagnetometerStale "magnetometer-stale"
+        "a measurement is held until ST2 is read; without that the data no longer changes (AK8963 data sheet, 6.4.3.2)"
 }
 
 impl std::fmt::Display for Trap {

@@ -87,6 +87,54 @@ pub fn address_sensor() {
     end_of_byte();
 }
 
+/// The sensor's address on the bus.
+pub const SENSOR: u8 = 0x68;
+
+/// The magnetometer's, behind the sensor.
+pub const MAGNETOMETER: u8 = 0x0C;
+
+/// Sends `byte` and waits until it has gone.
+fn send(byte: u8) {
+    write(I2C0_D, byte);
+    end_of_byte();
+}
+
+/// STOP, and a moment for the bus to become free.
+fn stop() {
+    write(I2C0_C1, 0x80u8);
+    wait(I2C0_S, 0x20, 0x00);
+}
+
+/// Lets the sensor start after power-on.
+#[cfg(target_os = "none")]
+pub fn wait_for_sensor() {
+    pause(700_000);
+}
+
+/// Writes a register of the device at `address`.
+pub fn write_sensor(address: u8, register: u8, value: u8) {
+    write(I2C0_C1, 0xB0u8);
+    send(address << 1);
+    send(register);
+    send(value);
+    stop();
+}
+
+/// Reads a register of the device at `address`.
+pub fn read_sensor(address: u8, register: u8) -> u8 {
+    write(I2C0_C1, 0xB0u8);
+    send(address << 1);
+    send(register);
+    write(I2C0_C1, 0xB4u8);
+    send(address << 1 | 1);
+    // Receive, and leave the only byte unacknowledged.
+    write(I2C0_C1, 0xA8u8);
+    read::<u8>(I2C0_D);
+    end_of_byte();
+    stop();
+    read::<u8>(I2C0_D)
+}
+
 /// Waits for the end of a byte on the bus.
 pub fn end_of_byte() {
     wait(I2C0_S, 0x02, 0x02);
@@ -119,6 +167,14 @@ mod assembly {
         unsafe { asm!(".inst.w 0xEE000A10") }
     }
 
+    /// Sleeps, whatever happens.
+    pub fn sleep() -> ! {
+        loop {
+            // SAFETY: waits for an interrupt.
+            unsafe { asm!("wfi") }
+        }
+    }
+
     /// Executes UDF.
     pub fn undefined_instruction() {
         // SAFETY: the processor faults.
@@ -145,8 +201,8 @@ mod assembly {
 
     /// Executes BKPT.
     pub fn breakpoint() {
-        // SAFETY: without a debugger the processor faults.
-        unsafe { asm!("bkpt #0") }
+        // SAFETY: the processor faults; 0 and 251 would call the board's loader.
+        unsafe { asm!("bkpt #1") }
     }
 
     /// Loads two words at once.

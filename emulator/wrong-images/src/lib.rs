@@ -7,7 +7,12 @@
 
 pub mod chip;
 
+pub mod flash;
+
 pub mod registers;
+
+#[cfg(target_os = "none")]
+pub mod usb;
 
 /// Defines an image: what it does when it has started.
 ///

@@ -5,7 +5,9 @@
 pub const SIM_SCGC4: u32 = 0x4004_8034;
 pub const SIM_SCGC5: u32 = 0x4004_8038;
 pub const SIM_SCGC6: u32 = 0x4004_803C;
+pub const SIM_SOPT2: u32 = 0x4004_8004;
 pub const SIM_CLKDIV1: u32 = 0x4004_8044;
+pub const SIM_CLKDIV2: u32 = 0x4004_8048;
 
 pub const WDOG_STCTRLH: u32 = 0x4005_2000;
 pub const WDOG_TOVALH: u32 = 0x4005_2004;
@@ -40,6 +42,16 @@ pub const PIT_TCTRL0: u32 = 0x4003_7108;
 
 pub const ADC0_SC1A: u32 = 0x4003_B000;
 
+pub const USB0_ISTAT: u32 = 0x4007_2080;
+pub const USB0_STAT: u32 = 0x4007_2090;
 pub const USB0_CTL: u32 = 0x4007_2094;
-pub const USB0_CONTROL: u32 = 0x4007_2108;
+pub const USB0_ADDR: u32 = 0x4007_2098;
+pub const USB0_BDTPAGE1: u32 = 0x4007_209C;
+pub const USB0_BDTPAGE2: u32 = 0x4007_20B0;
+pub const USB0_BDTPAGE3: u32 = 0x4007_20B4;
+pub const USB0_ENDPT0: u32 = 0x4007_20C0;
+pub const USB0_ENDPT1: u32 = 0x4007_20C4;
+pub const USB0_ENDPT2: u32 = 0x4007_20C8;
+pub const USB0_ENDPT3: u32 = 0x4007_20CC;
 pub const USB0_USBCTRL: u32 = 0x4007_2100;
+pub const USB0_CONTROL: u32 = 0x4007_2108;

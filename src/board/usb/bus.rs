@@ -38,6 +38,9 @@ mod flag {
 const AWAKE: u8 = flag::STALL | flag::SLEEP | flag::TOKEN | flag::ERROR | flag::RESET;
 const SUSPENDED: u8 = flag::RESUME | flag::START_OF_FRAME | flag::RESET;
 
+/// Completed tokens that STAT can hold.
+const COMPLETED: usize = 4;
+
 /// CTL.
 const ODD_RESET: u8 = 1 << 1;
 const ENABLE: u8 = 1 << 0;
@@ -322,6 +325,10 @@ impl UsbBus for Bus {
                 );
             }
         });
+        // Tokens from before the reset mean nothing any more; each clearing takes one out of STAT.
+        for _ in 0..COMPLETED {
+            self.clear(flag::TOKEN);
+        }
         self.clear(0xFF);
         // SAFETY: ERRSTAT takes any value; it clears the flags written as 1.
         registers().errstat().write(|w| unsafe { w.bits(0xFF) });

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Parser, ValueEnum};
+use vrduino_emulator::mpu9250::Part;
 use vrduino_emulator::time::{self, Ticks};
 use vrduino_emulator::witness::Trap;
 
@@ -40,6 +41,11 @@ pub struct Arguments {
     #[arg(long)]
     pub realtime: bool,
 
+    /// Offer the device to another host over USB/IP on this port of 127.0.0.1, in real time, instead of reading it; 0 is
+    /// any free port, which is printed
+    #[arg(long, value_name = "PORT", conflicts_with = "typed")]
+    pub usbip: Option<u16>,
+
     /// Type these keys on the serial port, e.g. 2@3.5 for the key 2 at 3.5 s; may be given more than once
     #[arg(long = "type", value_name = "KEYS@S")]
     pub typed: Vec<Typed>,
@@ -52,7 +58,7 @@ pub struct Arguments {
     #[arg(long)]
     pub pessimistic: bool,
 
-    /// Time the calls of this function, by the end of its path, e.g. Tracker::update
+    /// Time the calls of this function, by the end of its path; else the tracker's filter, Tracker::track
     #[arg(long, value_name = "FUNCTION")]
     pub time: Option<String>,
 
@@ -65,27 +71,49 @@ pub struct Arguments {
     #[arg(long)]
     pub traps: bool,
 
-    /// The sensor's WHO_AM_I
+    /// The individual sensor: perfect, typical (errors drawn within the data sheet's limits) or worst (all at the limit)
+    #[arg(long, value_name = "KIND", default_value = "perfect")]
+    pub part: PartKind,
+
+    /// Which of the typical or worst parts, and which noise: the same seed gives the same run
+    #[arg(long, value_name = "N", default_value = "1", value_parser = seed, allow_negative_numbers = true)]
+    pub seed: u64,
+
+    /// The sensor's WHO_AM_I; 0x70 and 0x75 are clones without magnetometer
     #[arg(long, value_name = "BYTE", default_value = "0x71", value_parser = byte)]
     pub who_am_i: u8,
 
-    /// Error of the sensor's own oscillator in percent; the data sheet allows 1
-    #[arg(
-        long,
-        value_name = "PERCENT",
-        default_value = "0", value_parser = percent,
-        allow_negative_numbers = true
-    )]
-    pub sensor_clock: f64,
+    /// Nothing answers where the magnetometer should be
+    #[arg(long)]
+    pub no_magnetometer: bool,
+
+    /// Error of the sensor's own oscillator in percent, else the part's; the data sheet allows 1
+    #[arg(long, value_name = "PERCENT", value_parser = percent, allow_negative_numbers = true)]
+    pub sensor_clock: Option<f64>,
+
+    /// Temperature of the sensor in °C
+    #[arg(long, value_name = "C", default_value = "25", value_parser = celsius, allow_negative_numbers = true)]
+    pub temperature: f64,
 
     /// What is written down about the run.
     #[command(flatten)]
     pub tools: Tools,
 }
 
+/// Which individual.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum PartKind {
+    /// No error but quantisation.
+    Perfect,
+    /// Errors drawn within the data sheet's limits.
+    Typical,
+    /// Errors at the data sheet's limits.
+    Worst,
+}
+
 const FAULT_HELP: &str = "Break something, from S on (else from the start) and until T (else for good): absent (no sensor \
                           answers), frozen (no new samples), brown-out (the sensor loses its settings), stuck-sda (held \
-                          until it is clocked free), stuck-scl, no-pull-ups, unread (nobody reads the port), unplugged; may be given \
+                          until it is clocked free), stuck-scl, no-pull-ups, unread (nobody reads the port), unplugged, noisy-usb (damaged packets and lost handshakes); may be given \
                           more than once";
 
 pub fn positive(text: &str) -> Result<f64, String> {
@@ -100,6 +128,18 @@ fn percent(text: &str) -> Result<f64, String> {
         Ok(value) if (-10.0..=10.0).contains(&value) => Ok(value),
         _ => Err("give a percentage from -10 to 10, such as 0.8".into()),
     }
+}
+
+fn celsius(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (-40.0..=85.0).contains(&value) => Ok(value),
+        _ => Err("give a temperature in °C from -40 to 85, where the sensor is specified".into()),
+    }
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse()
+        .map_err(|_| "give a whole number from 0 to 18446744073709551615, such as 7".into())
 }
 
 fn byte(text: &str) -> Result<u8, String> {
@@ -169,7 +209,7 @@ impl FromStr for Fault {
         }
         Ok(Fault {
             kind: Kind::from_str(kind, true)
-                .map_err(|_| "give one of absent, frozen, brown-out, stuck-sda, stuck-scl, no-pull-ups, unread, unplugged")?,
+                .map_err(|_| "give one of absent, frozen, brown-out, stuck-sda, stuck-scl, no-pull-ups, unread, unplugged, noisy-usb")?,
             from: time::ticks(from),
             until: until.map_or(Ticks::MAX, time::ticks),
         })
@@ -184,6 +224,25 @@ pub struct Script {
 }
 
 impl Arguments {
+    /// The sensor on the board.
+    pub fn part(&self) -> Part {
+        let kind = match self.part {
+            PartKind::Perfect => Part::perfect(),
+            PartKind::Typical => Part::typical(self.seed),
+            PartKind::Worst => Part::worst(self.seed),
+        };
+        let part = kind.who_am_i(self.who_am_i).temperature(self.temperature);
+        let part = match self.sensor_clock {
+            Some(percent) => part.clock_error(percent / 100.0),
+            None => part,
+        };
+        if self.no_magnetometer {
+            part.without_magnetometer()
+        } else {
+            part
+        }
+    }
+
     /// The traps that do not stop the run.
     pub fn allowed(&self) -> Vec<Trap> {
         if self.allow.iter().any(|Allowed(trap)| trap.is_none()) {

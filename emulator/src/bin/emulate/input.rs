@@ -14,8 +14,10 @@ pub enum Kind {
     BrownOut,
     StuckSda,
     StuckScl,
+    NoPullUps,
     Unread,
     Unplugged,
+    NoisyUsb,
 }
 
 /// Something from outside.
@@ -44,6 +46,8 @@ impl Input {
                 Kind::BrownOut => {}
                 Kind::StuckSda => chip.pins.sda_held_for = if on { 5 } else { 0 },
                 Kind::StuckScl => chip.pins.scl_held = on,
+                Kind::NoPullUps => chip.pins.no_pull_ups = on,
+                Kind::NoisyUsb => chip.host.set_noise(if on { 5 } else { 0 }),
                 Kind::Unread => chip.host.set_reading(!on),
                 Kind::Unplugged => chip.host.set_plugged(!on),
             },

@@ -25,12 +25,14 @@ use vrduino_emulator::board::{Board, Setup};
 use vrduino_emulator::cpu::Pace;
 use vrduino_emulator::firmware;
 use vrduino_emulator::gdb;
+use vrduino_emulator::host::Host;
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::{self, Motion};
 use vrduino_emulator::time::{self, MILLISECOND, Ticks};
+use vrduino_emulator::usbip;
 use vrduino_emulator::witness::{Stop, Trap};
 
-use arguments::Arguments;
+use arguments::{Arguments, PartKind};
 use input::Input;
 use port::PseudoTerminal;
 use record::{Origin, Recorder, Replay, Stream};
@@ -47,6 +49,8 @@ macro_rules! say {
     }};
 }
 use say;
+/// The tracker's update of its estimators by one sample: what is timed unless something else is asked for.
+const FILTER: &str = "Tracker::track";
 
 /// Exit code of a run that ended in a trap.
 const TRAPPED: u8 = 3;
@@ -85,10 +89,18 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     };
     let image = Image::open(&path)?;
     let origin = Origin::new(&image, motion.as_ref());
+    if let Some(function) = &arguments.time
+        && image.address_of(function).is_none()
+    {
+        return Err(format!(
+            "the image has no function, or more than one, whose path ends in {function}; compilers merge small \
+             functions into their callers unless they are marked #[inline(never)]"
+        )
+        .into());
+    }
     let setup = Setup {
         motion,
-        who_am_i: arguments.who_am_i,
-        sensor_clock_error: arguments.sensor_clock / 100.0,
+        part: arguments.part(),
         allowed: arguments.allowed(),
         pace: if arguments.pessimistic {
             Pace::Greatest
@@ -96,10 +108,14 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
             Pace::Least
         },
         skip_polling: true,
-        timed_function: arguments.time.clone().unwrap_or_default(),
+        timed_function: arguments.time.clone().unwrap_or_else(|| FILTER.into()),
     };
     let mut board = Board::new(image, setup);
     let tools = &arguments.tools;
+    let exporter = arguments.usbip.map(export).transpose()?;
+    if exporter.is_some() {
+        board.chip().host = Host::exporting();
+    }
     let origin = origin.of(&board);
     let replay = tools.replay.as_deref().map(Replay::open).transpose()?;
     if let Some(replay) = &replay {
@@ -113,7 +129,9 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     let terminal = PseudoTerminal::open()?;
     say!("image   {}", path.display());
     say!("motion  {description}");
-    if let Some(path) = terminal.path() {
+    if let Some(exporter) = &exporter {
+        say!("usb/ip  {}, bus ID {}", exporter.address(), usbip::BUS_ID);
+    } else if let Some(path) = terminal.path() {
         say!("port    {path}");
     }
     let limit = match &replay {
@@ -133,12 +151,14 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
         was_full: false,
         stream: Stream::default(),
         report: Report::new(),
-        realtime: arguments.realtime,
+        realtime: arguments.realtime || exporter.is_some(),
+        exporter,
         paced_since: None,
     };
     let mut script = arguments.script();
     while limit.is_none_or(|limit| board.now() < limit)
         && (board.stop().is_none() || session.is_debugged())
+        && board.in_loader().is_none()
         && !interrupted.load(Ordering::Relaxed)
     {
         let inputs = script.due(board.now());
@@ -172,9 +192,18 @@ fn is_broken_pipe(error: &Error) -> bool {
 fn choose_motion(arguments: &Arguments) -> Result<Box<dyn Motion>, Error> {
     let motion = match &arguments.motion {
         Some(path) => motion::open(path)?,
-        None => motion::built_in(),
+        // A part with errors of its own needs none added to what it feels.
+        None if arguments.part == PartKind::Perfect => motion::built_in(),
+        None => Box::new(motion::Head::new()),
     };
     Ok(motion::skip(motion, arguments.start)?)
+}
+
+/// Offers the device on a port, instead of using it.
+fn export(port: u16) -> Result<usbip::Server, Error> {
+    usbip::Server::open(port).map_err(|error| {
+        format!("port {port} of 127.0.0.1 cannot be opened: {error}; give another, or 0 for any free one").into()
+    })
 }
 
 /// The PC's side: where the stream goes and how fast.
@@ -189,6 +218,8 @@ struct Session {
     stream: Stream,
     report: Report,
     realtime: bool,
+    /// Who has the device, if it is not used here.
+    exporter: Option<usbip::Server>,
     /// Wall and emulated time from which on the run is held to real time.
     paced_since: Option<(Instant, Ticks)>,
 }
@@ -230,6 +261,12 @@ impl Session {
     fn pass_on(&mut self, board: &mut Board) -> Result<(), Error> {
         for event in board.take_events() {
             say!("{event}");
+        }
+        if let Some(exporter) = &mut self.exporter {
+            exporter.serve(board);
+            for note in exporter.take_notes() {
+                say!("{:9.4} s  {note}", time::seconds(board.now()));
+            }
         }
         let mut attached = self.terminal.is_attached();
         let mut typed = self.terminal.read();

@@ -75,8 +75,12 @@ impl Report {
                 ),
                 None => say!("device  none: the image did not bring up its USB port"),
             }
-            for complaint in chip.host.complaints.iter().chain(&chip.usb.complaints) {
-                say!("usb     {complaint}");
+            for (at, complaint) in chip.sensor.complaints.list() {
+                say!(
+                    "sensor  {complaint} ({}), first at {:.4} s",
+                    complaint.section(),
+                    time::seconds(*at)
+                );
             }
         }
         match self.first {

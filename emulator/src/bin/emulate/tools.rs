@@ -50,11 +50,11 @@ pub struct Tools {
     pub tcp: Option<u16>,
 
     /// Write down what comes from outside, and when, to repeat the run with --replay
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["gdb", "replay"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["gdb", "replay", "usbip"])]
     pub record: Option<PathBuf>,
 
     /// Repeat a run that was written down with --record; image, motion and options have to be the same
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["gdb", "typed", "fault", "seconds"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["gdb", "typed", "fault", "seconds", "usbip"])]
     pub replay: Option<PathBuf>,
 }
 

@@ -1,0 +1,10 @@
+//! Does not take its address.
+
+#![no_std]
+#![no_main]
+
+use wrong_images::usb::{self, Mistake};
+
+wrong_images::image!({
+    usb::run(Mistake::AddressLate);
+});

@@ -1,0 +1,10 @@
+//! Refuses to describe itself.
+
+#![no_std]
+#![no_main]
+
+use wrong_images::usb::{self, Mistake};
+
+wrong_images::image!({
+    usb::run(Mistake::Enumeration);
+});

@@ -1,0 +1,10 @@
+//! Refuses once, then sends without being asked to.
+
+#![no_std]
+#![no_main]
+
+use wrong_images::usb::{self, Mistake};
+
+wrong_images::image!({
+    usb::run(Mistake::HaltLost);
+});

@@ -1,0 +1,10 @@
+//! Does not switch on an endpoint of its configuration.
+
+#![no_std]
+#![no_main]
+
+use wrong_images::usb::{self, Mistake};
+
+wrong_images::image!({
+    usb::run(Mistake::NoAnswer);
+});

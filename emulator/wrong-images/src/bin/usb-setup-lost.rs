@@ -1,0 +1,10 @@
+//! Has no buffer for a SETUP.
+
+#![no_std]
+#![no_main]
+
+use wrong_images::usb::{self, Mistake};
+
+wrong_images::image!({
+    usb::run(Mistake::SetupLost);
+});

@@ -1,0 +1,10 @@
+//! Sends a byte in the status stage.
+
+#![no_std]
+#![no_main]
+
+use wrong_images::usb::{self, Mistake};
+
+wrong_images::image!({
+    usb::run(Mistake::StatusStage);
+});

@@ -1,0 +1,10 @@
+//! Sends DATA0 and nothing else.
+
+#![no_std]
+#![no_main]
+
+use wrong_images::usb::{self, Mistake};
+
+wrong_images::image!({
+    usb::run(Mistake::Toggle);
+});

@@ -1,0 +1,10 @@
+//! Signals resume without leave.
+
+#![no_std]
+#![no_main]
+
+use wrong_images::usb::{self, Mistake};
+
+wrong_images::image!({
+    usb::run(Mistake::WakeUp);
+});
