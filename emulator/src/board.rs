@@ -1,5 +1,7 @@
 //! A whole board that runs: processor and chip in step, resets, and what happened on the way.
 
+pub mod debug;
+
 mod loader;
 
 pub mod measure;
@@ -10,11 +12,17 @@ pub mod setup;
 
 mod shared;
 
+mod snapshot;
+
+pub mod watch;
+
 use std::sync::{Arc, MutexGuard};
 
 use crate::chip::{Chip, INTERRUPTS};
+use crate::cpu::op::Access;
 use crate::cpu::{Cpu, Fault, Pace, PeripheralBus, RAM_BASE, Step};
 use crate::image::Image;
+use crate::journal::Happening;
 use crate::mpu9250::Mpu9250;
 use crate::peripherals::rcm::Cause;
 use crate::time::{self, SECOND, Ticks};
@@ -23,6 +31,8 @@ use measure::{Measure, Moment};
 use polling::Polling;
 pub use setup::Setup;
 use shared::Shared;
+pub use snapshot::Snapshot;
+use watch::Watch;
 
 /// Something worth telling, with the time it happened at.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -56,6 +66,8 @@ pub struct Board {
     asserted: u128,
     flash_hidden: bool,
     instructions: u64,
+    /// What the last instruction reached for.
+    last_access: Option<Access>,
     resets: u32,
     events: Vec<Event>,
     pace: Pace,
@@ -68,6 +80,7 @@ pub struct Board {
     measure: Measure,
     storm: Storm,
     polling: Option<Polling>,
+    watch: Watch,
     /// Where the image's variables end: below this the stack must not grow.
     stack_limit: u32,
 }
@@ -109,6 +122,7 @@ impl Board {
             asserted: 0,
             flash_hidden: false,
             instructions: 0,
+            last_access: None,
             resets: 0,
             events: Vec::new(),
             pace: setup.pace,
@@ -119,6 +133,7 @@ impl Board {
             measure: Measure::new(timed),
             storm: Storm::default(),
             polling: setup.skip_polling.then(Polling::default),
+            watch: Watch::default(),
             stack_limit,
         }
     }
@@ -133,14 +148,27 @@ impl Board {
             return;
         }
         while self.now < until && self.stop.is_none() && self.loader.is_none() {
-            if self.now >= self.next_event || self.shared.is_touched() {
-                self.service();
-            }
-            if self.cpu.is_asleep() {
-                self.sleep(until);
-            } else {
-                self.step(until);
-            }
+            self.advance(until);
+        }
+    }
+
+    /// One instruction, or a piece of sleep that does not go beyond `until`.
+    fn advance(&mut self, until: Ticks) {
+        let due = self.now >= self.next_event;
+        if due && let Some(polling) = &mut self.polling {
+            polling.forget();
+        }
+        if due || self.shared.is_touched() {
+            self.service();
+        }
+        let before = self.watch.is_on().then(|| self.watched());
+        if self.cpu.is_asleep() {
+            self.sleep(until);
+        } else {
+            self.step(until);
+        }
+        if let Some(before) = before {
+            self.tell_changes(before);
         }
     }
 
@@ -149,6 +177,7 @@ impl Board {
         self.pc = self.cpu.pc();
         let step = self.cpu.step(self.flash_ratio);
         self.instructions += 1;
+        self.last_access = step.access;
         self.pass(self.pace.of(step.cycles));
         self.measure.awake(step.cycles, self.core_hz);
         let moment = Moment {
@@ -168,7 +197,7 @@ impl Board {
         }
         let now_in = self.cpu.exception();
         if now_in != exception {
-            self.change_exception(exception, now_in, moment.next_stack < stack);
+            self.change_exception(now_in, moment.next_stack > stack);
         } else if now_in >= 16 && moment.next == self.storm.handler && self.tail_chained() {
             self.enter(now_in);
         } else {
@@ -189,13 +218,12 @@ impl Board {
         }
     }
 
-    /// The processor has gone from one exception to another; it entered one unless it came back.
-    fn change_exception(&mut self, from: u16, to: u16, pushed: bool) {
+    /// The processor has gone to another exception; a return, which has popped a frame, may lead to one as well.
+    fn change_exception(&mut self, to: u16, popped: bool) {
         if let Some(polling) = &mut self.polling {
             polling.disturb();
         }
-        // Tail-chaining pushes nothing, but goes from one interrupt straight to another.
-        if to != 0 && (pushed || from != 0) {
+        if to != 0 && !popped {
             self.enter(to);
         }
     }
@@ -302,7 +330,7 @@ impl Board {
         if !self.cpu.is_asleep() {
             let now_in = self.cpu.exception();
             if now_in != exception {
-                self.change_exception(exception, now_in, true);
+                self.change_exception(now_in, false);
             }
             return;
         }
@@ -409,6 +437,7 @@ impl Board {
         self.flash_ratio = chip.flash_ratio();
         drop(chip);
         self.cpu.reset();
+        self.tell_watchers(Some(Happening::Reset));
         self.remainder = 0;
         self.next_event = self.now;
         self.asserted = 0;

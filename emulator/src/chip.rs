@@ -17,11 +17,13 @@ mod transfers;
 
 pub use analog::Analog;
 pub use communication::Communication;
-pub use interrupts::INTERRUPTS;
+pub use interrupts::{INTERRUPTS, interrupt_name};
+pub use slots::peripheral_at;
 pub use timers::Timers;
 
 use crate::cpu::Ram;
 use crate::host::Host;
+use crate::journal::{Happening, Journal};
 use crate::mpu9250::Mpu9250;
 use crate::peripherals::crc::CrcGenerator;
 use crate::peripherals::dma::Dma;
@@ -43,7 +45,7 @@ use crate::witness::{Trap, Witness};
 use slots::{SLOTS, Slot};
 
 /// Every peripheral, the sensor, and the host.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Chip {
     /// The moment the processor is at.
     pub now: Ticks,
@@ -92,6 +94,8 @@ pub struct Chip {
     complaints_heard: usize,
     /// What the program did that silicon does not forgive.
     pub witness: Witness,
+    /// What happens, for those who watch.
+    pub journal: Journal,
 }
 
 impl Chip {
@@ -130,6 +134,15 @@ impl Chip {
             reset_wanted: None,
             complaints_heard: 0,
             witness: Witness::default(),
+            journal: Journal::default(),
+        }
+    }
+
+    /// A copy with a SRAM of its own.
+    pub fn fork(&self) -> Chip {
+        Chip {
+            ram: self.ram.copy(),
+            ..self.clone()
         }
     }
 
@@ -213,12 +226,17 @@ impl Chip {
         }
         self.timer.advance(now, bus_hz);
         self.advance_modules();
-        self.i2c.advance(now, &self.pins, &mut self.sensor);
+        let journal = &mut self.journal;
+        self.i2c
+            .advance((now, bus_hz), &self.pins, &mut self.sensor, journal);
         self.hear_the_sensor();
         if now >= self.host.next_event() {
             let clocked = self.usb_clocked();
             self.host
                 .advance(now, clocked, &mut self.usb, &self.ram, &mut self.witness);
+            for (_, happening) in self.usb.journal.take() {
+                self.journal.note(now, || happening);
+            }
         }
     }
 
@@ -422,6 +440,23 @@ impl Chip {
             _ => self.write_module(address, width, value),
         }
         true
+    }
+
+    /// Notes an access by the processor, and what it did to the sensor bus's wires.
+    pub fn note_access(&mut self, address: u32, width: u8, value: Option<u32>, store: bool) {
+        const PORT_B: u32 = 0x4004_A000;
+        const GPIO: u32 = 0x400F_F000;
+        self.journal.note(self.now, || Happening::Register {
+            address,
+            width,
+            value,
+            store,
+        });
+        if store && [PORT_B, GPIO].contains(&(address & !0xFFF)) {
+            let (scl, sda) = (self.pins.scl(), self.pins.sda());
+            self.journal
+                .note(self.now, || Happening::Wires { scl, sda });
+        }
     }
 
     /// GPIO takes narrow accesses: the other bits of PDOR and PDDR stay, those of the other registers are 0.

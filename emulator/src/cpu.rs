@@ -3,6 +3,10 @@
 //! `rsemu` is young (0.0.x), so nothing outside this folder knows it. Around it this module adds what the engine does
 //! not have: the band of cycle counts ([`timing`]), names for faults, and the repair of ITSTATE.
 
+mod counters;
+
+pub mod debug;
+
 mod fault;
 
 pub mod flash_cache;
@@ -11,19 +15,22 @@ mod memory;
 
 pub mod op;
 
+mod state;
+
 pub mod timing;
 
 use std::sync::Arc;
 
 use rsemu::core::space::{AddressSpace, MemAttrs};
 use rsemu::core::value::Width;
-use rsemu::cpu::arm::v7m::sys::{Exception, Sys};
+use rsemu::cpu::arm::v7m::sys::Exception;
 use rsemu::cpu::arm::v7m::{ArmV7m, Config, Regs};
 
 use memory::Map;
 pub use memory::{PeripheralBus, Ram};
 
 use crate::witness::Trap;
+use counters::Owed;
 use op::{Access, Class, Op};
 use timing::{Cycles, Timing};
 
@@ -81,13 +88,6 @@ pub struct Step {
     pub access: Option<Access>,
 }
 
-/// What DWT_CYCCNT and SysTick have yet to count, or have counted too much: the engine has its own idea of cycles.
-#[derive(Debug, Clone, Copy, Default)]
-struct Owed {
-    cycle_counter: i64,
-    systick: i64,
-}
-
 /// The processor with its memories.
 #[derive(Debug)]
 pub struct Cpu {
@@ -102,6 +102,8 @@ pub struct Cpu {
     timing: Timing,
     pace: Pace,
     owed: Owed,
+    /// Cycles for which the counters need no look: SysTick cannot expire within them.
+    calm: u64,
     /// SysTick or DWT_CYCCNT counts.
     counting: bool,
     asleep: bool,
@@ -125,6 +127,7 @@ impl Cpu {
             timing: Timing::default(),
             pace,
             owed: Owed::default(),
+            calm: 0,
             counting: false,
             asleep: false,
             faults_seen: 0,
@@ -147,6 +150,7 @@ impl Cpu {
         self.registers = Regs::new();
         self.timing = Timing::default();
         self.owed = Owed::default();
+        self.calm = 0;
         self.counting = false;
         self.asleep = false;
         self.faults_seen = 0;
@@ -181,9 +185,7 @@ impl Cpu {
             self.keep_it_state();
         }
         if private.is_some_and(|access| access.store) {
-            self.counting = self
-                .core
-                .with_sys(|sys| sys.syst_csr & 1 != 0 || sys.cyccnt_enabled());
+            self.look_at_counters();
         }
         let next = self.registers.r[15];
         let changed = (self.registers.xpsr ^ xpsr) & EXCEPTION != 0 || next == LOCKED_UP;
@@ -196,7 +198,7 @@ impl Cpu {
             self.timing.of(&op, pc, access, branched, ratio)
         };
         if self.counting {
-            self.owe(self.pace.of(cycles) as i64 - charged as i64);
+            self.owe(self.pace.of(cycles), charged);
         }
         if op.class == Class::Sleep {
             self.asleep = self.core.is_asleep();
@@ -285,27 +287,6 @@ impl Cpu {
         }
     }
 
-    fn owe(&mut self, cycles: i64) {
-        /// How far the counters may be off between two looks at them.
-        const TOLERANCE: i64 = 16;
-        self.owed.cycle_counter += cycles;
-        self.owed.systick += cycles;
-        if self.owed.systick.abs() >= TOLERANCE {
-            self.settle();
-        }
-    }
-
-    /// Lets DWT_CYCCNT and SysTick count what they are owed.
-    fn settle(&mut self) {
-        if self.counting {
-            let mut owed = self.owed;
-            self.core.with_sys(|sys| settle(sys, &mut owed));
-            self.owed = owed;
-        } else {
-            self.owed = Owed::default();
-        }
-    }
-
     /// Whether the core sleeps in WFI or WFE.
     pub fn is_asleep(&self) -> bool {
         self.asleep
@@ -330,31 +311,6 @@ impl Cpu {
     /// Drives interrupt input `irq`.
     pub fn set_irq(&self, irq: u16, asserted: bool) {
         self.core.set_irq(irq, asserted);
-    }
-
-    /// Cycles until SysTick would pend its exception; `None` if it never will.
-    pub fn cycles_to_systick(&mut self) -> Option<u64> {
-        self.settle();
-        self.core.with_sys(|sys| {
-            let (enabled, interrupt) = (sys.syst_csr & 1 != 0, sys.syst_csr & 2 != 0);
-            (enabled && interrupt && sys.syst_rvr != 0).then(|| match sys.syst_cvr {
-                0 => u64::from(sys.syst_rvr) + 1,
-                count => u64::from(count),
-            })
-        })
-    }
-
-    /// Lets `cycles` pass in sleep: SysTick counts on, DWT_CYCCNT does not (its clock is gated by WFI).
-    pub fn sleep(&self, cycles: u64) {
-        self.core.with_sys(|sys| count_systick(sys, cycles));
-    }
-
-    /// Lets `cycles` pass awake: both counters count.
-    pub fn idle(&self, cycles: u64) {
-        self.core.with_sys(|sys| {
-            sys.tick_cyccnt(cycles);
-            count_systick(sys, cycles);
-        });
     }
 
     /// The program counter.
@@ -394,34 +350,6 @@ impl Cpu {
             .read(u64::from(address), Width::U16, MemAttrs::DEBUG)
             .ok()
             .map(|v| v as u16)
-    }
-}
-
-fn count_systick(sys: &mut Sys, cycles: u64) {
-    if sys.tick_systick(cycles) && sys.syst_csr & 2 != 0 {
-        sys.set_pending(Exception::SYSTICK, true);
-    }
-}
-
-/// Makes the counters right. SysTick is not turned back over its reload, lest it expire twice: what is left waits.
-fn settle(sys: &mut Sys, owed: &mut Owed) {
-    let counter = std::mem::take(&mut owed.cycle_counter);
-    if sys.cyccnt_enabled() {
-        sys.dwt_cyccnt = sys.dwt_cyccnt.wrapping_add(counter as u32);
-    }
-    if sys.syst_csr & 1 == 0 || sys.syst_rvr == 0 {
-        owed.systick = 0;
-    } else if owed.systick > 0 {
-        count_systick(sys, std::mem::take(&mut owed.systick) as u64);
-    } else {
-        // At 0 it has just expired, and would do so again.
-        let room = match sys.syst_cvr {
-            0 => 0,
-            count => i64::from(sys.syst_rvr.saturating_sub(count)),
-        };
-        let back = room.min(-owed.systick);
-        sys.syst_cvr += back as u32;
-        owed.systick += back;
     }
 }
 

@@ -3,7 +3,7 @@
 use std::env;
 use std::error::Error;
 use std::fmt;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
@@ -151,7 +151,8 @@ fn provide_target(root: &Path) -> Result<(), BuildError> {
     if has_target(root)? {
         return Ok(());
     }
-    eprintln!("the target {TARGET} is missing; adding it");
+    // Where nobody can read it, it need not be said.
+    let _ = writeln!(io::stderr(), "the target {TARGET} is missing; adding it");
     let status = Command::new("rustup")
         .args(["target", "add", TARGET])
         .current_dir(root)

@@ -36,4 +36,14 @@ pub mod random;
 
 pub mod witness;
 
+pub mod hash;
+
+pub mod journal;
+
+pub mod trace;
+
+pub mod vcd;
+
+pub mod gdb;
+
 pub mod time;

@@ -92,6 +92,13 @@ pub trait Motion: Send + Sync {
     fn describe(&self) -> String;
 }
 
+/// By its description: what a sensor is carried through is no state of it.
+impl std::fmt::Debug for dyn Motion {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.describe())
+    }
+}
+
 /// The motion used when none is named: a [`Head`] looking around, seen by an imperfect sensor.
 pub fn built_in() -> Box<dyn Motion> {
     Box::new(Imperfect::new(

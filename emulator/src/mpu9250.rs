@@ -96,7 +96,7 @@ pub struct Burst {
 }
 
 /// The sensor.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Mpu9250 {
     part: Part,
     registers: Registers,
@@ -123,16 +123,6 @@ pub struct Mpu9250 {
     pub complaints: Complaints,
     /// Every burst from INT_STATUS on, once recording was asked for.
     pub recording: Option<Vec<Burst>>,
-}
-
-impl std::fmt::Debug for Mpu9250 {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Mpu9250")
-            .field("part", &self.part)
-            .field("faults", &self.faults)
-            .field("complaints", &self.complaints)
-            .finish_non_exhaustive()
-    }
 }
 
 impl Mpu9250 {

@@ -50,6 +50,10 @@ pub struct Measure {
     pub latencies: [Latency; INTERRUPTS.len()],
     /// The timed function's calls.
     pub calls: Calls,
+    /// What is left of `awake`, in ticks × hertz.
+    rest: Cycles,
+    /// How long the interrupt that was entered last had waited.
+    pub(super) waited: Option<Ticks>,
     timed: Option<u32>,
     call: Option<Call>,
 }
@@ -73,6 +77,8 @@ impl Measure {
             stack_low: u32::MAX,
             latencies: [Latency::default(); INTERRUPTS.len()],
             calls: Calls::default(),
+            rest: Cycles::default(),
+            waited: None,
             timed,
             call: None,
         }
@@ -80,10 +86,15 @@ impl Measure {
 
     /// Takes in `count` equal steps of the processor awake.
     pub(super) fn awake(&mut self, cycles: Cycles, hz: u32) {
-        let ticks = |cycles: u64| cycles * SECOND / u64::from(hz);
+        let hz = u64::from(hz);
+        let ticks = |cycles: u64, rest: &mut u64| {
+            let scaled = cycles * SECOND + *rest;
+            *rest = scaled % hz;
+            scaled / hz
+        };
         self.awake += Cycles {
-            least: ticks(cycles.least),
-            greatest: ticks(cycles.greatest),
+            least: ticks(cycles.least, &mut self.rest.least),
+            greatest: ticks(cycles.greatest, &mut self.rest.greatest),
         };
     }
 
@@ -126,12 +137,14 @@ impl Measure {
 
     /// The handler of interrupt `number` begins.
     pub(super) fn entered(&mut self, number: u16, now: Ticks) {
+        self.waited = None;
         let Some(index) = INTERRUPTS.iter().position(|&known| known == number) else {
             return;
         };
         let latency = &mut self.latencies[index];
         latency.count += 1;
         if let Some(requested) = latency.requested.take() {
+            self.waited = Some(now - requested);
             latency.worst = latency.worst.max(now - requested);
         }
     }

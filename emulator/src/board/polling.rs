@@ -47,6 +47,12 @@ impl Polling {
         self.pause = 0;
     }
 
+    /// Something that a loop may have read can have changed since it did.
+    pub fn forget(&mut self) {
+        self.steps.clear();
+        self.second = None;
+    }
+
     /// Takes in a step that began in `state`; says what a round is if the processor goes in circles, and stands at the
     /// beginning of one.
     pub fn step(

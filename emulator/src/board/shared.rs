@@ -56,11 +56,21 @@ impl Shared {
 impl PeripheralBus for Shared {
     fn read(&self, address: u32, width: u8) -> Option<u32> {
         self.touch();
-        self.chip().read(address, width)
+        let mut chip = self.chip();
+        let value = chip.read(address, width);
+        if chip.journal.is_on() {
+            chip.note_access(address, width, value, false);
+        }
+        value
     }
 
     fn write(&self, address: u32, width: u8, value: u32) -> bool {
         self.touch();
-        self.chip().write(address, width, value)
+        let mut chip = self.chip();
+        let accepted = chip.write(address, width, value);
+        if chip.journal.is_on() {
+            chip.note_access(address, width, accepted.then_some(value), true);
+        }
+        accepted
     }
 }

@@ -1,5 +1,6 @@
 //! The serial interfaces beside USB and the sensor bus, and the pins they talk over.
 
+use crate::journal::Journal;
 use crate::peripherals::clocks::Clocks;
 use crate::peripherals::i2c::{I2c, Target};
 use crate::peripherals::pins::Pins;
@@ -106,8 +107,12 @@ impl Communication {
         }
         self.spi.advance(clocks);
         if self.i2c1.next_event() <= clocks.now {
-            self.i2c1
-                .advance(clocks.now, &pins.second_bus(), &mut Nobody);
+            self.i2c1.advance(
+                (clocks.now, clocks.bus_hz),
+                &pins.second_bus(),
+                &mut Nobody,
+                &mut Journal::default(),
+            );
         }
     }
 }

@@ -67,3 +67,25 @@ impl Chip {
         lines
     }
 }
+
+/// Who asks for interrupt `number`, of those that the modelled peripherals can raise.
+pub fn interrupt_name(number: u16) -> Option<&'static str> {
+    const PIT: [&str; 4] = ["PIT0", "PIT1", "PIT2", "PIT3"];
+    const PORTS: [&str; 5] = ["PORTA", "PORTB", "PORTC", "PORTD", "PORTE"];
+    let number = u32::from(number);
+    Some(match number {
+        irq::FTFL => "FTFL",
+        irq::I2C0 => "I2C0",
+        irq::I2C1 => "I2C1",
+        irq::SPI0 => "SPI0",
+        irq::RTC_ALARM => "RTC_alarm",
+        irq::RTC_SECOND => "RTC_second",
+        irq::PIT..=71 => PIT[(number - irq::PIT) as usize],
+        irq::PDB => "PDB",
+        irq::USBOTG => "USBOTG",
+        irq::TSI => "TSI",
+        irq::LPTMR => "LPTMR",
+        irq::PORT..=91 => PORTS[(number - irq::PORT) as usize],
+        _ => return None,
+    })
+}

@@ -48,3 +48,10 @@ pub(super) const SLOTS: &[Slot] = &[
     slot(0xB8, "FTM2", Some((3, 24)), 4),        slot(0xBB, "ADC1", Some((3, 27)), 0),
     slot(0xCC, "DAC0", Some((2, 12)), 0),        slot(0xFF, "GPIO", None, 0),
 ];
+
+/// The name of the peripheral at `address`, as the manual has it.
+pub fn peripheral_at(address: u32) -> Option<&'static str> {
+    let page = (address >> 12).checked_sub(0x4_0000)?;
+    let slot = SLOTS.iter().find(|slot| slot.page == page)?;
+    Some(slot.name)
+}

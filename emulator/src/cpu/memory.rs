@@ -28,7 +28,7 @@ pub trait PeripheralBus: Send + Sync + std::fmt::Debug {
 }
 
 /// The chip's SRAM, which outlives every reset and which USB reads and writes on its own.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Ram(Arc<RamStore>);
 
 impl Ram {
@@ -81,6 +81,23 @@ impl Ram {
             || address
                 .checked_sub(RAM_BASE)
                 .is_some_and(|offset| self.0.write_at(u64::from(offset), bytes).is_ok())
+    }
+}
+
+impl Ram {
+    /// Another SRAM with the same contents; a clone is another handle of the same one.
+    pub fn copy(&self) -> Ram {
+        let copy = Ram::new();
+        let bytes = self.bytes(RAM_BASE, RAM_SIZE as usize).unwrap_or_default();
+        copy.set_bytes(RAM_BASE, &bytes);
+        copy
+    }
+}
+
+/// Without its contents, and without the address it happens to have on this computer.
+impl std::fmt::Debug for Ram {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Ram")
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a transaction of the host needs: the device, the address it has, and who notes what it does wrong.
 
 use crate::cpu::Ram;
+use crate::journal::Happening;
 use crate::peripherals::usbotg::{Answer, Token, UsbController};
 use crate::time::{MICROSECOND, Ticks};
 use crate::witness::{Trap, Witness};
@@ -68,6 +69,12 @@ impl Wire<'_> {
         let answer = self
             .device
             .transact(self.address, number, token, self.ram, self.witness);
+        self.device.journal.note(0, || Happening::Usb {
+            address: self.address,
+            endpoint: number,
+            token: token.clone(),
+            answer: answer.clone(),
+        });
         match (answer, token) {
             (Answer::Ack | Answer::Dropped, _) if disturbance == Disturbance::Handshake => {
                 Answer::Silence

@@ -63,7 +63,7 @@ impl Mode {
 }
 
 /// The magnetometer.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Ak8963 {
     measurement: Measurement,
     mode: Mode,

@@ -48,7 +48,7 @@ pub struct Counts {
 }
 
 /// Sensing elements and filters.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct SignalPath {
     motion: Arc<dyn Motion>,
     part: Part,

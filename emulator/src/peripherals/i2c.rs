@@ -2,6 +2,7 @@
 //! flags rise only then.
 
 use super::pins::{Pins, Wiring};
+use crate::journal::{Happening, I2cByte, Journal};
 use crate::time::{self, NEVER, Ticks};
 use crate::witness::{Trap, Witness};
 
@@ -102,7 +103,13 @@ impl I2c {
     }
 
     /// Ends the running transfer if its time has come.
-    pub fn advance(&mut self, now: Ticks, pins: &Pins, target: &mut dyn Target) {
+    pub fn advance(
+        &mut self,
+        (now, bus_hz): (Ticks, u32),
+        pins: &Pins,
+        target: &mut dyn Target,
+        journal: &mut Journal,
+    ) {
         let Some((transfer, at)) = self.running else {
             return;
         };
@@ -119,6 +126,9 @@ impl I2c {
         let acknowledged = match transfer {
             Transfer::Stop => {
                 self.status &= !BUSY;
+                journal.note(at, || Happening::I2cStop {
+                    bit: self.bits(1, bus_hz),
+                });
                 if connected {
                     target.stop();
                 }
@@ -133,6 +143,17 @@ impl I2c {
             }
         };
         self.status = self.status & !RXAK | TCF | IICIF | u8::from(!acknowledged);
+        let (kind, byte) = match transfer {
+            Transfer::Address(byte) => (I2cByte::Address, byte),
+            Transfer::Write(byte) => (I2cByte::Written, byte),
+            _ => (I2cByte::Read, self.data),
+        };
+        journal.note(at, || Happening::I2cByte {
+            kind,
+            byte,
+            acknowledged,
+            bit: self.bits(1, bus_hz),
+        });
     }
 
     /// Reads an 8-bit register. Reading D while receiving starts the next byte.

@@ -13,6 +13,7 @@ mod transactions;
 use std::collections::VecDeque;
 
 use crate::cpu::Ram;
+use crate::journal::{Happening, Journal};
 use crate::witness::{Trap, Witness};
 use ownership::Ownership;
 use table::Place;
@@ -110,6 +111,8 @@ pub struct UsbController {
     address_to_come: Option<u8>,
     /// The pull-up was released since the host last looked.
     let_go: bool,
+    /// What happens on the bus, for those who watch; the time is the chip's to add.
+    pub journal: Journal,
 }
 
 impl UsbController {
@@ -136,12 +139,15 @@ impl UsbController {
             ownership: Ownership::default(),
             address_to_come: None,
             let_go: false,
+            journal: Journal::default(),
         }
     }
 
     /// A reset of the chip or of the module: the pull-up is released.
     pub fn reset(&mut self) {
+        let journal = std::mem::take(&mut self.journal);
         *self = UsbController {
+            journal,
             let_go: true,
             ..UsbController::new()
         };
@@ -190,6 +196,7 @@ impl UsbController {
 
     /// The host resets the bus.
     pub fn bus_reset(&mut self) {
+        self.journal.note(0, || Happening::UsbReset);
         self.address_to_come = None;
         self.ownership.forget();
         if self.is_listening() {
@@ -202,6 +209,7 @@ impl UsbController {
     /// A frame begins; the descriptors of all endpoints are looked at for changes that were none of the program's
     /// business.
     pub fn start_of_frame(&mut self, frame: u16, ram: &Ram, witness: &mut Witness) {
+        self.journal.note(0, || Happening::UsbFrame(frame & 0x7FF));
         if !self.is_listening() {
             return;
         }

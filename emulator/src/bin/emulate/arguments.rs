@@ -4,10 +4,12 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Parser, ValueEnum};
-use vrduino_emulator::board::Board;
 use vrduino_emulator::mpu9250::Part;
 use vrduino_emulator::time::{self, Ticks};
 use vrduino_emulator::witness::Trap;
+
+use super::input::{Input, Kind};
+use super::tools::Tools;
 
 /// Boots the tracker's image on an emulated VRduino board and prints what it streams.
 ///
@@ -92,6 +94,10 @@ pub struct Arguments {
     /// Temperature of the sensor in °C
     #[arg(long, value_name = "C", default_value = "25", value_parser = celsius, allow_negative_numbers = true)]
     pub temperature: f64,
+
+    /// What is written down about the run.
+    #[command(flatten)]
+    pub tools: Tools,
 }
 
 /// Which individual.
@@ -110,7 +116,7 @@ const FAULT_HELP: &str = "Break something, from S on (else from the start) and u
                           until it is clocked free), stuck-scl, no-pull-ups, unread (nobody reads the port), unplugged, noisy-usb (damaged packets and lost handshakes); may be given \
                           more than once";
 
-fn positive(text: &str) -> Result<f64, String> {
+pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (0.0..1e9).contains(&value) => Ok(value),
         _ => Err("give a number of seconds from 0 up to 1000000000, such as 10 or 2.5".into()),
@@ -174,19 +180,6 @@ impl FromStr for Typed {
             at: time::ticks(positive(at)?),
         })
     }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Kind {
-    Absent,
-    Frozen,
-    BrownOut,
-    StuckSda,
-    StuckScl,
-    NoPullUps,
-    Unread,
-    Unplugged,
-    NoisyUsb,
 }
 
 /// Something broken for a while.
@@ -275,31 +268,20 @@ impl Arguments {
 }
 
 impl Script {
-    /// Does what is due.
-    pub fn apply(&mut self, board: &mut Board) {
-        let now = board.now();
-        for typed in self.typed.extract_if(.., |typed| typed.at <= now) {
-            board.chip().host.send(typed.keys.as_bytes());
-        }
+    /// What is due at `now`.
+    pub fn due(&mut self, now: Ticks) -> Vec<Input> {
+        let mut inputs: Vec<Input> = self
+            .typed
+            .extract_if(.., |typed| typed.at <= now)
+            .map(|typed| Input::Typed(typed.keys.into_bytes()))
+            .collect();
         for (fault, on) in &mut self.faults {
             let due = (fault.from..fault.until).contains(&now);
-            if due == *on {
-                continue;
-            }
-            *on = due;
-            let mut chip = board.chip();
-            match fault.kind {
-                Kind::Absent => chip.sensor.faults.absent = due,
-                Kind::Frozen => chip.sensor.faults.frozen = due,
-                Kind::BrownOut if due => chip.sensor.brown_out(now),
-                Kind::BrownOut => {}
-                Kind::StuckSda => chip.pins.sda_held_for = if due { 5 } else { 0 },
-                Kind::StuckScl => chip.pins.scl_held = due,
-                Kind::NoPullUps => chip.pins.no_pull_ups = due,
-                Kind::Unread => chip.host.set_reading(!due),
-                Kind::Unplugged => chip.host.set_plugged(!due),
-                Kind::NoisyUsb => chip.host.set_noise(if due { 5 } else { 0 }),
+            if due != *on {
+                *on = due;
+                inputs.push(Input::Fault(fault.kind, due));
             }
         }
+        inputs
     }
 }

@@ -2,9 +2,17 @@
 
 mod arguments;
 
+mod input;
+
 mod port;
 
+mod record;
+
 mod report;
+
+mod tcp;
+
+mod tools;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -16,6 +24,7 @@ use clap::Parser;
 use vrduino_emulator::board::{Board, Setup};
 use vrduino_emulator::cpu::Pace;
 use vrduino_emulator::firmware;
+use vrduino_emulator::gdb;
 use vrduino_emulator::host::Host;
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::{self, Motion};
@@ -24,11 +33,22 @@ use vrduino_emulator::usbip;
 use vrduino_emulator::witness::{Stop, Trap};
 
 use arguments::{Arguments, PartKind};
+use input::Input;
 use port::PseudoTerminal;
+use record::{Origin, Recorder, Replay, Stream};
 use report::Report;
+use tcp::TcpPort;
 
 type Error = Box<dyn std::error::Error>;
 
+/// Says something on standard error; where nobody can read it, it need not be said.
+macro_rules! say {
+    ($($what:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stderr(), $($what)*);
+    }};
+}
+use say;
 /// The tracker's update of its estimators by one sample: what is timed unless something else is asked for.
 const FILTER: &str = "Tracker::track";
 
@@ -38,19 +58,21 @@ const TRAPPED: u8 = 3;
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     if arguments.traps {
+        let mut stdout = io::stdout().lock();
         for trap in Trap::ALL {
-            println!("{trap}\n    {}", trap.rule());
+            // Whoever reads them may have seen enough.
+            let _ = writeln!(stdout, "{trap}\n    {}", trap.rule());
         }
         return ExitCode::SUCCESS;
     }
     match run(&arguments) {
         Ok(None) => ExitCode::SUCCESS,
         Ok(Some(stop)) => {
-            eprintln!("\n{stop}");
+            say!("\n{stop}");
             ExitCode::from(TRAPPED)
         }
         Err(error) => {
-            eprintln!("error: {error}");
+            say!("error: {error}");
             ExitCode::FAILURE
         }
     }
@@ -66,6 +88,7 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
         None => firmware::build(firmware::BuildOptions { quiet: true })?,
     };
     let image = Image::open(&path)?;
+    let origin = Origin::new(&image, motion.as_ref());
     if let Some(function) = &arguments.time
         && image.address_of(function).is_none()
     {
@@ -88,23 +111,45 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
         timed_function: arguments.time.clone().unwrap_or_else(|| FILTER.into()),
     };
     let mut board = Board::new(image, setup);
-    let terminal = PseudoTerminal::open()?;
+    let tools = &arguments.tools;
     let exporter = arguments.usbip.map(export).transpose()?;
-    eprintln!("image   {}", path.display());
-    eprintln!("motion  {description}");
-    if let Some(exporter) = &exporter {
+    if exporter.is_some() {
         board.chip().host = Host::exporting();
-        eprintln!("usb/ip  {}, bus ID {}", exporter.address(), usbip::BUS_ID);
-    } else if let Some(path) = terminal.path() {
-        eprintln!("port    {path}");
     }
-    let limit = arguments.seconds.or(ends).map(time::ticks);
+    let origin = origin.of(&board);
+    let replay = tools.replay.as_deref().map(Replay::open).transpose()?;
+    if let Some(replay) = &replay {
+        replay.check(&origin)?;
+    }
+    let recorder = tools.record.as_deref();
+    let recorder = recorder
+        .map(|path| Recorder::create(path, &origin))
+        .transpose()?;
+    tools.watch(&mut board)?;
+    let terminal = PseudoTerminal::open()?;
+    say!("image   {}", path.display());
+    say!("motion  {description}");
+    if let Some(exporter) = &exporter {
+        say!("usb/ip  {}, bus ID {}", exporter.address(), usbip::BUS_ID);
+    } else if let Some(path) = terminal.path() {
+        say!("port    {path}");
+    }
+    let limit = match &replay {
+        Some(replay) => Some(replay.end()),
+        None => arguments.seconds.or(ends).map(time::ticks),
+    };
     let interrupted = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&interrupted);
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
 
     let mut session = Session {
         terminal,
+        tcp: tools.tcp_port()?,
+        debugger: tools.debugger()?,
+        recorder,
+        replay,
+        was_full: false,
+        stream: Stream::default(),
         report: Report::new(),
         realtime: arguments.realtime || exporter.is_some(),
         exporter,
@@ -112,20 +157,35 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     };
     let mut script = arguments.script();
     while limit.is_none_or(|limit| board.now() < limit)
-        && board.stop().is_none()
+        && (board.stop().is_none() || session.is_debugged())
         && board.in_loader().is_none()
         && !interrupted.load(Ordering::Relaxed)
     {
-        script.apply(&mut board);
-        board.run(MILLISECOND.min(limit.map_or(MILLISECOND, |limit| limit - board.now())));
+        let inputs = script.due(board.now());
+        session.give(&mut board, inputs)?;
+        let left = limit.map_or(MILLISECOND, |limit| limit - board.now());
+        session.run(&mut board, MILLISECOND.min(left));
         match session.pass_on(&mut board) {
             // Whoever read our output has seen enough.
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(None),
+            Err(error) if is_broken_pipe(&error) => {
+                board.finish_watching()?;
+                return Ok(None);
+            }
             result => result?,
         }
     }
+    board
+        .finish_watching()
+        .map_err(|error| format!("the trace or the VCD file could not be written: {error}"))?;
     session.report.print(&mut board);
+    session.end(&board, interrupted.load(Ordering::Relaxed))?;
     Ok(board.stop().cloned())
+}
+
+fn is_broken_pipe(error: &Error) -> bool {
+    error
+        .downcast_ref::<io::Error>()
+        .is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
 }
 
 /// What moves the sensor, from the chosen start.
@@ -149,6 +209,13 @@ fn export(port: u16) -> Result<usbip::Server, Error> {
 /// The PC's side: where the stream goes and how fast.
 struct Session {
     terminal: PseudoTerminal,
+    tcp: Option<TcpPort>,
+    debugger: Option<gdb::Server>,
+    recorder: Option<Recorder>,
+    replay: Option<Replay>,
+    /// Whether the host was last told that its reader has fallen behind.
+    was_full: bool,
+    stream: Stream,
     report: Report,
     realtime: bool,
     /// Who has the device, if it is not used here.
@@ -158,34 +225,74 @@ struct Session {
 }
 
 impl Session {
-    fn pass_on(&mut self, board: &mut Board) -> io::Result<()> {
+    fn is_debugged(&self) -> bool {
+        self.debugger.as_ref().is_some_and(gdb::Server::holds)
+    }
+
+    /// Lets the board run, as far as a debugger allows.
+    fn run(&mut self, board: &mut Board, span: Ticks) {
+        let Some(debugger) = &mut self.debugger else {
+            board.run(span);
+            return;
+        };
+        debugger.run(board, span);
+        for note in debugger.take_notes() {
+            say!("gdb     {note}");
+        }
+    }
+
+    /// Gives the board what comes from outside; in a replay, what came then.
+    fn give(&mut self, board: &mut Board, inputs: Vec<Input>) -> Result<(), Error> {
+        let now = board.now();
+        let inputs = match &mut self.replay {
+            Some(replay) => replay.due(now),
+            None => inputs,
+        };
+        for input in inputs {
+            if let Some(recorder) = &mut self.recorder {
+                recorder.note(now, &input)?;
+            }
+            input.apply(board);
+        }
+        Ok(())
+    }
+
+    /// Hands the stream over, and what was typed to the board.
+    fn pass_on(&mut self, board: &mut Board) -> Result<(), Error> {
         for event in board.take_events() {
-            eprintln!("{event}");
+            say!("{event}");
         }
         if let Some(exporter) = &mut self.exporter {
             exporter.serve(board);
             for note in exporter.take_notes() {
-                eprintln!("{:9.4} s  {note}", time::seconds(board.now()));
+                say!("{:9.4} s  {note}", time::seconds(board.now()));
             }
         }
-        let attached = self.terminal.is_attached();
-        let received = {
-            let mut chip = board.chip_quietly();
-            let keys = self.terminal.read();
-            if !keys.is_empty() {
-                chip.host.send(&keys);
-            }
-            if self.terminal.is_full() != self.terminal.was_full {
-                // A reader that falls behind holds the host back, and the host the board.
-                self.terminal.was_full = self.terminal.is_full();
-                chip.host.set_reading(!self.terminal.was_full);
-            }
-            chip.host.take_received()
-        };
+        let mut attached = self.terminal.is_attached();
+        let mut typed = self.terminal.read();
+        let mut full = self.terminal.is_full();
+        if let Some(tcp) = &mut self.tcp {
+            attached |= tcp.is_attached();
+            typed.extend(tcp.read());
+            full |= tcp.is_full();
+        }
+        let mut inputs = Vec::new();
+        if !typed.is_empty() {
+            inputs.push(Input::Typed(typed));
+        }
+        if full != self.was_full {
+            // A reader that falls behind holds the host back, and the host the board.
+            self.was_full = full;
+            inputs.push(Input::Reading(!full));
+        }
+        self.give(board, inputs)?;
+        let received = board.chip_quietly().host.take_received();
         if !received.is_empty() {
             self.report.take_in(board.now(), &received);
-            if attached {
-                self.terminal.write(&received);
+            self.stream.take_in(&received);
+            self.terminal.write(&received);
+            if let Some(tcp) = &mut self.tcp {
+                tcp.write(&received);
             }
             let mut stdout = io::stdout().lock();
             stdout
@@ -196,7 +303,23 @@ impl Session {
                 })?;
         }
         self.terminal.flush();
+        if let Some(tcp) = &mut self.tcp {
+            tcp.flush();
+        }
         self.pace(attached || self.realtime, board.now());
+        Ok(())
+    }
+
+    /// Writes the end of the run down, or holds it against the recorded one.
+    fn end(&mut self, board: &Board, interrupted: bool) -> Result<(), Error> {
+        let ending = self.stream.ending(board);
+        if let Some(recorder) = &mut self.recorder {
+            recorder.end(ending)?;
+        }
+        if let Some(replay) = self.replay.as_ref().filter(|_| !interrupted) {
+            replay.compare(ending)?;
+            say!("replay  the same stream and the same state as recorded");
+        }
         Ok(())
     }
 

@@ -25,8 +25,7 @@ mod unix {
         master: OwnedFd,
         path: String,
         waiting: VecDeque<u8>,
-        /// Whether the host was last told to stop.
-        pub was_full: bool,
+        attached: bool,
     }
 
     impl PseudoTerminal {
@@ -47,7 +46,7 @@ mod unix {
                 master,
                 path,
                 waiting: VecDeque::new(),
-                was_full: false,
+                attached: false,
             })
         }
 
@@ -68,6 +67,7 @@ mod unix {
             if !attached {
                 self.waiting.clear();
             }
+            self.attached = attached;
             attached
         }
 
@@ -86,9 +86,11 @@ mod unix {
             }
         }
 
-        /// Queues part of the stream.
+        /// Queues part of the stream, for whoever was attached when last asked.
         pub fn write(&mut self, bytes: &[u8]) {
-            self.waiting.extend(bytes);
+            if self.attached {
+                self.waiting.extend(bytes);
+            }
         }
 
         /// Hands over as much as the reader takes.
@@ -109,15 +111,12 @@ mod absent {
     use std::io;
 
     /// Systems without pseudo-terminals have the stream on standard output only.
-    pub struct PseudoTerminal {
-        /// Always false.
-        pub was_full: bool,
-    }
+    pub struct PseudoTerminal;
 
     impl PseudoTerminal {
         /// Does nothing.
         pub fn open() -> io::Result<PseudoTerminal> {
-            Ok(PseudoTerminal { was_full: false })
+            Ok(PseudoTerminal)
         }
 
         /// There is none.

@@ -6,6 +6,8 @@ use vrduino_emulator::board::Board;
 use vrduino_emulator::chip::INTERRUPTS;
 use vrduino_emulator::time::{self, Ticks};
 
+use super::say;
+
 /// Counts the stream's lines.
 pub struct Report {
     started: Instant,
@@ -56,14 +58,14 @@ impl Report {
             time::seconds(board.now()),
             self.started.elapsed().as_secs_f64(),
         );
-        eprintln!(
+        say!(
             "ran     {emulated:.3} s in {wall:.1} s, {:.2} times real time",
             emulated / wall.max(1e-9)
         );
         {
             let chip = board.chip();
             match chip.host.identity() {
-                Some(device) => eprintln!(
+                Some(device) => say!(
                     "device  {} by {}, {:04x}:{:04x}, serial number {}",
                     device.product_name,
                     device.manufacturer,
@@ -71,10 +73,10 @@ impl Report {
                     device.product,
                     device.serial_number
                 ),
-                None => eprintln!("device  none: the image did not bring up its USB port"),
+                None => say!("device  none: the image did not bring up its USB port"),
             }
             for (at, complaint) in chip.sensor.complaints.list() {
-                eprintln!(
+                say!(
                     "sensor  {complaint} ({}), first at {:.4} s",
                     complaint.section(),
                     time::seconds(*at)
@@ -89,37 +91,37 @@ impl Report {
                 } else {
                     0.0
                 };
-                eprintln!(
+                say!(
                     "lines   {}, of these {} QC: the first at {:.3} s, then {rate:.1} in a second",
                     self.lines,
                     self.orientations,
                     time::seconds(first)
                 );
             }
-            None => eprintln!("lines   {}, none of them QC", self.lines),
+            None => say!("lines   {}, none of them QC", self.lines),
         }
         // Before the image has started, the counter's memory holds anything.
         match board.variable("vrduino_dropped_lines") {
             Some(count) if self.lines > 0 => {
-                eprintln!("dropped {count} lines, for want of a reader")
+                say!("dropped {count} lines, for want of a reader")
             }
             Some(_) => {}
-            None => eprintln!("dropped unknown: the image has no counter that the emulator knows"),
+            None => say!("dropped unknown: the image has no counter that the emulator knows"),
         }
-        eprintln!("resets  {}", board.resets());
+        say!("resets  {}", board.resets());
         let measure = board.measure();
         let busy = |awake: u64| 100.0 * awake as f64 / board.now().max(1) as f64;
-        eprintln!(
+        say!(
             "cpu     {:.1} to {:.1} % busy, {:.1} million instructions a second",
             busy(measure.awake.least),
             busy(measure.awake.greatest),
             board.instructions() as f64 / emulated.max(1e-9) / 1e6
         );
         let stack = board.image().stack.saturating_sub(measure.stack_low);
-        eprintln!("stack   {stack} bytes at its deepest");
+        say!("stack   {stack} bytes at its deepest");
         for (number, latency) in INTERRUPTS.iter().zip(&measure.latencies) {
             if latency.count > 0 {
-                eprintln!(
+                say!(
                     "irq {:3} taken {} times, after {:.2} µs at worst",
                     number,
                     latency.count,
@@ -127,9 +129,10 @@ impl Report {
                 );
             }
         }
-        let calls = &measure.calls;
+        say!("hash    {:016x}", board.state_hash());
+        let calls = &board.measure().calls;
         if calls.count > 0 {
-            eprintln!(
+            say!(
                 "timed   {} calls: {} instructions on average, {} at most; {} to {} cycles on average, {} to {} at worst",
                 calls.count,
                 calls.instructions / calls.count,

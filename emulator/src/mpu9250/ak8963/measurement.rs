@@ -23,7 +23,7 @@ const OVERFLOW: f64 = 4_912.0;
 const SELF_TEST_FIELD: f64 = -300.0;
 
 /// The measuring part of the magnetometer.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Measurement {
     motion: Arc<dyn Motion>,
     /// Its errors.
