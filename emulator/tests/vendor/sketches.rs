@@ -14,7 +14,12 @@ const FAST: u32 = 72_000_000;
 
 /// Every test.
 pub const ALL: &[Test] = &[
-    ("the_sheet_for_a_real_board_says_what_is_measured", "bring_up", FAST, bring_up),
+    (
+        "the_sheet_for_a_real_board_says_what_is_measured",
+        "bring_up",
+        FAST,
+        bring_up,
+    ),
     ("usb_serial_prints_and_echoes", "serial", FAST, usb_serial),
     (
         "usb_serial_works_at_48_mhz",
