@@ -2,9 +2,13 @@
 
 pub mod debug;
 
+mod judgement;
+
 mod loader;
 
 pub mod measure;
+
+mod passing;
 
 mod polling;
 
@@ -20,34 +24,21 @@ use std::sync::{Arc, MutexGuard};
 
 use crate::chip::{Chip, INTERRUPTS};
 use crate::cpu::op::Access;
-use crate::cpu::{Cpu, Fault, Pace, PeripheralBus, RAM_BASE, Step};
+use crate::cpu::{Cpu, Pace, PeripheralBus, RAM_BASE};
 use crate::image::Image;
 use crate::journal::Happening;
 use crate::mpu9250::Mpu9250;
 use crate::peripherals::rcm::Cause;
-use crate::time::{self, SECOND, Ticks};
-use crate::witness::{Offence, Stop, Trap};
+use crate::time::Ticks;
+use crate::witness::{Stop, Trap};
+pub use judgement::Event;
+use judgement::Storm;
 use measure::{Measure, Moment};
 use polling::Polling;
 pub use setup::Setup;
 use shared::Shared;
 pub use snapshot::Snapshot;
 use watch::Watch;
-
-/// Something worth telling, with the time it happened at.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Event {
-    /// When.
-    pub at: Ticks,
-    /// What, in a sentence.
-    pub what: String,
-}
-
-impl std::fmt::Display for Event {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:9.4} s  {}", time::seconds(self.at), self.what)
-    }
-}
 
 /// The board.
 #[derive(Debug)]
@@ -83,15 +74,6 @@ pub struct Board {
     watch: Watch,
     /// Where the image's variables end: below this the stack must not grow.
     stack_limit: u32,
-}
-
-/// Entries of one exception since the program last got anywhere.
-#[derive(Debug, Clone, Copy, Default)]
-struct Storm {
-    exception: u16,
-    entries: u32,
-    /// The handler's first instruction.
-    handler: u32,
 }
 
 impl Board {
@@ -234,128 +216,6 @@ impl Board {
         self.cpu.registers().0[14] >= EXC_RETURN && self.pc != self.cpu.pc()
     }
 
-    fn enter(&mut self, exception: u16) {
-        /// So many entries without a single instruction of the program between them are no accident.
-        const STORM: u32 = 20_000;
-        if let Some(number) = exception.checked_sub(16) {
-            self.measure.entered(number, self.now);
-        }
-        let entries = if self.storm.exception == exception {
-            self.storm.entries + 1
-        } else {
-            1
-        };
-        self.storm = Storm {
-            exception,
-            entries,
-            handler: self.cpu.pc(),
-        };
-        if entries == STORM {
-            let what = format!(
-                "exception {exception} was taken {STORM} times, and the program did not get anywhere between"
-            );
-            self.judge(vec![Offence {
-                trap: Trap::InterruptStorm,
-                what,
-            }]);
-        }
-    }
-
-    /// The main stack has never been this deep.
-    fn lower_stack(&mut self, stack: u32) {
-        let before = std::mem::replace(&mut self.measure.stack_low, stack);
-        if stack < self.stack_limit && before >= self.stack_limit {
-            let what = format!(
-                "the stack pointer is {stack:#010x}, but variables end at {:#010x}",
-                self.stack_limit
-            );
-            self.judge(vec![Offence {
-                trap: Trap::StackIntoData,
-                what,
-            }]);
-        }
-    }
-
-    /// A fault on the peripheral bridges has been told by who saw it there.
-    fn take_fault(&mut self, fault: Fault) {
-        let told = !self.shared.chip().witness.is_empty();
-        if fault.trap == Trap::Breakpoint && self.calls_loader() {
-            self.enter_loader();
-        } else if !told {
-            self.judge(vec![Offence {
-                trap: fault.trap,
-                what: fault.what,
-            }]);
-        }
-    }
-
-    fn look_for_polling(&mut self, step: &Step, until: Ticks) {
-        let Some(polling) = &mut self.polling else {
-            return;
-        };
-        if let Some(access) = step.access
-            && access.address >= PERIPHERALS
-            && (access.store || !self.shared.chip().is_steady(access.address))
-        {
-            polling.give_up();
-            return;
-        }
-        let (before, after) = (self.cpu.registers_before(), self.cpu.registers());
-        let Some(round) = polling.step(before, step.cycles, after) else {
-            return;
-        };
-        let wake = self.next_event.min(until);
-        let per_round = self.pace.of(round.cycles);
-        let cycles = u128::from(wake.saturating_sub(self.now)) * u128::from(self.core_hz)
-            / u128::from(SECOND);
-        let cycles = (cycles as u64).min(self.cpu.cycles_to_systick().unwrap_or(u64::MAX));
-        // The last round before the event is executed like any other.
-        let rounds = (cycles / per_round).saturating_sub(1);
-        if rounds > 0 {
-            self.cpu.idle(rounds * per_round);
-            self.pass(rounds * per_round);
-            self.instructions += rounds * round.instructions;
-            let mut sum = round.cycles;
-            sum.least *= rounds;
-            sum.greatest *= rounds;
-            self.measure.awake(sum, self.core_hz);
-        }
-    }
-
-    /// Sleeps until something happens; one idle step lets the processor look at its interrupts.
-    fn sleep(&mut self, until: Ticks) {
-        let exception = self.cpu.exception();
-        let step = self.cpu.step(self.flash_ratio);
-        self.pass(self.pace.of(step.cycles));
-        if !self.cpu.is_asleep() {
-            let now_in = self.cpu.exception();
-            if now_in != exception {
-                self.change_exception(now_in, false);
-            }
-            return;
-        }
-        let wake = self.next_event.min(until);
-        let Some(span) = wake.checked_sub(self.now).filter(|&span| span > 0) else {
-            return;
-        };
-        let cycles =
-            (u128::from(span) * u128::from(self.core_hz)).div_ceil(u128::from(SECOND)) as u64;
-        let cycles = cycles
-            .min(self.cpu.cycles_to_systick().unwrap_or(u64::MAX))
-            .max(1);
-        self.cpu.sleep(cycles);
-        self.pass(cycles);
-    }
-
-    /// Lets `cycles` of the core pass.
-    fn pass(&mut self, cycles: u64) {
-        let scaled = cycles * SECOND + self.remainder;
-        let hz = u64::from(self.core_hz);
-        self.remainder = scaled % hz;
-        self.now += scaled / hz;
-        self.shared.set_now(self.now);
-    }
-
     /// Lets the chip do what is due and carries its interrupts to the processor.
     fn service(&mut self) {
         self.shared.look();
@@ -398,30 +258,6 @@ impl Board {
         self.next_event = chip.next_event();
     }
 
-    /// Stops at the first offence that is not allowed; the others become events.
-    fn judge(&mut self, offences: Vec<Offence>) {
-        let place = self.place_of(self.pc);
-        for Offence { trap, what } in offences {
-            if self.allowed.contains(&trap) {
-                let what = format!("{trap}: {what}; at {place}");
-                self.tell(what);
-            } else {
-                self.stop.get_or_insert(Stop {
-                    trap,
-                    what,
-                    at: self.now,
-                    pc: self.pc,
-                    place: place.clone(),
-                });
-            }
-        }
-    }
-
-    /// Why the board runs no more, if it stepped into a trap that was not allowed.
-    pub fn stop(&self) -> Option<&Stop> {
-        self.stop.as_ref()
-    }
-
     fn reset(&mut self, cause: Cause, why: &str) {
         let by = match cause {
             Cause::Watchdog => "the watchdog resets the chip: ",
@@ -445,14 +281,6 @@ impl Board {
         self.storm = Storm::default();
         if let Some(polling) = &mut self.polling {
             polling.disturb();
-        }
-    }
-
-    /// An address for people.
-    fn place_of(&self, pc: u32) -> String {
-        match self.image.symbol_at(pc) {
-            Some((name, offset)) => format!("{pc:#010x} ({name} + {offset:#x})"),
-            None => format!("{pc:#010x}"),
         }
     }
 
@@ -500,19 +328,6 @@ impl Board {
         self.resets
     }
 
-    /// Notes an event. A program that is reset again and again would fill the memory before anybody looks.
-    fn tell(&mut self, what: String) {
-        const KEPT: usize = 1_000;
-        if self.events.len() < KEPT {
-            self.events.push(Event { at: self.now, what });
-        }
-    }
-
-    /// Takes what happened since the last call; after a thousand events the rest is left out.
-    pub fn take_events(&mut self) -> Vec<Event> {
-        std::mem::take(&mut self.events)
-    }
-
     /// Reads the 32-bit variable whose symbol ends in `path`, such as `vrduino_dropped_lines`.
     pub fn variable(&self, path: &str) -> Option<u32> {
         let address = self.image.address_of(path)?;
@@ -522,6 +337,3 @@ impl Board {
 
 /// Application interrupt and reset control register (ARMv7-M, B3.2.6).
 const AIRCR: u32 = 0xE000_ED0C;
-
-/// From here on there are registers.
-const PERIPHERALS: u32 = 0x4000_0000;

@@ -1,6 +1,7 @@
 //! The board under a debugger: instruction by instruction, with breakpoints.
 
-use super::{Board, PERIPHERALS};
+use super::Board;
+use super::passing::PERIPHERALS;
 use crate::cpu::debug::DebugRegisters;
 use crate::peripherals::rcm::Cause;
 use crate::time::Ticks;
