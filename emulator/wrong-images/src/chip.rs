@@ -46,6 +46,30 @@ pub fn disable_watchdog() {
     write(WDOG_STCTRLH, 0x01D2u16);
 }
 
+/// Keeps the watchdog on, with a time-out of 100 ms of its 1 kHz oscillator.
+#[inline(always)]
+pub fn run_watchdog() {
+    configure_watchdog(0x01D1);
+}
+
+/// The same with a window: no refresh in the first 50 ms.
+#[inline(always)]
+pub fn run_watchdog_with_window() {
+    configure_watchdog(0x01D9);
+}
+
+#[inline(always)]
+fn configure_watchdog(control: u16) {
+    write(WDOG_UNLOCK, 0xC520u16);
+    write(WDOG_UNLOCK, 0xD928u16);
+    write(WDOG_TOVALH, 0u16);
+    write(WDOG_TOVALL, 100u16);
+    write(WDOG_PRESC, 0u16);
+    write(WDOG_WINH, 0u16);
+    write(WDOG_WINL, 50u16);
+    write(WDOG_STCTRLH, control);
+}
+
 /// From FEI to FBE: the crystal drives the core.
 pub fn use_crystal() {
     write(OSC_CR, 0x8Au8);
