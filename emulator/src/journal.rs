@@ -2,8 +2,8 @@
 //!
 //! Nothing is noted while nobody watches, and nothing that is noted influences what happens.
 
-use crate::peripherals::usbotg::{Answer, Token};
 use crate::time::Ticks;
+use crate::usb_transaction::{Answer, Token};
 
 /// Something that happened.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -22,6 +22,8 @@ pub mod chip;
 
 pub mod cpu;
 
+pub mod usb_transaction;
+
 pub mod host;
 
 pub mod board;

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use super::transfer::{Failure, Outcome, Request, Ticket};
 use super::wire::{RETRY, TRIES, Wire};
-use crate::peripherals::usbotg::{Answer, Token};
 use crate::time::{MICROSECOND, SECOND, Ticks};
+use crate::usb_transaction::{Answer, Token};
 use crate::witness::Trap;
 
 /// The host's drivers need a while before the next request.

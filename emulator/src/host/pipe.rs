@@ -6,8 +6,8 @@ use std::collections::VecDeque;
 use super::descriptors::{Endpoint, Kind};
 use super::transfer::{Failure, Outcome, Ticket};
 use super::wire::{RETRY, TRIES, Wire};
-use crate::peripherals::usbotg::{Answer, Token};
 use crate::time::{MILLISECOND, Ticks};
+use crate::usb_transaction::{Answer, Token};
 use crate::witness::Trap;
 
 /// A transfer on its way.

@@ -2,8 +2,9 @@
 
 use crate::cpu::Ram;
 use crate::journal::Happening;
-use crate::peripherals::usbotg::{Answer, Token, UsbController};
+use crate::peripherals::usbotg::UsbController;
 use crate::time::{MICROSECOND, Ticks};
+use crate::usb_transaction::{Answer, Token};
 use crate::witness::{Trap, Witness};
 
 /// A NAKed bulk or control pipe is tried again after this time.

@@ -18,8 +18,6 @@ use crate::witness::{Trap, Witness};
 use ownership::Ownership;
 use table::Place;
 
-pub use transactions::{Answer, Token};
-
 const OTGCTL: u32 = 0x1C;
 const ISTAT: u32 = 0x80;
 const INTEN: u32 = 0x84;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::peripherals::usbotg::{Answer, Token};
+use crate::usb_transaction::{Answer, Token};
 
 /// Counts the NAKs of each endpoint until something else comes.
 #[derive(Debug, Clone, Default)]

@@ -3,12 +3,9 @@
 use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream};
 
-use super::protocol::{LONGEST_TRANSFER, Operation};
+use super::protocol::{CONGESTED, Operation};
 use super::session::Session;
 use crate::time::Ticks;
-
-/// Bytes that may wait to be sent before no more commands are taken, and to be read before no more are.
-pub(super) const CONGESTED: usize = 2 * LONGEST_TRANSFER;
 
 /// How far a connection is.
 #[derive(Debug)]

@@ -28,6 +28,9 @@ const ZERO_PACKET: u32 = 0x40;
 
 /// More than any driver asks for at once; a larger length is a mistake or an attack.
 pub(super) const LONGEST_TRANSFER: usize = 1 << 20;
+
+/// Bytes that may wait to be sent before no more commands are taken, and to be read before no more are.
+pub(super) const CONGESTED: usize = 2 * LONGEST_TRANSFER;
 /// The same for isochronous packets.
 const MOST_PACKETS: usize = 1024;
 

@@ -2,8 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::connection::CONGESTED;
-use super::protocol::{self, Command, Malformed, Submit};
+use super::protocol::{self, CONGESTED, Command, Malformed, Submit};
 use crate::host::{Failure, Host, Outcome, Request, Ticket, Transfer};
 
 /// The statuses of a transfer, as Linux numbers its errors.

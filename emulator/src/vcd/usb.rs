@@ -3,8 +3,8 @@
 use vcd::Value;
 
 use crate::journal::Happening;
-use crate::peripherals::usbotg::{Answer, Token};
 use crate::time::{MILLISECOND, Ticks};
+use crate::usb_transaction::{Answer, Token};
 
 /// The bus from a moment on.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -14,6 +14,8 @@ mod tcp;
 
 mod tools;
 
+mod values;
+
 use std::io::{self, Write};
 use std::process::ExitCode;
 use std::sync::Arc;

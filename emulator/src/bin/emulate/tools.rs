@@ -12,9 +12,9 @@ use vrduino_emulator::trace::{Topic, Trace};
 use vrduino_emulator::vcd::Vcd;
 
 use super::Error;
-use super::arguments::positive;
 use super::say;
 use super::tcp::TcpPort;
+use crate::values::positive;
 
 /// What is written down about the run.
 #[derive(Args, Debug)]

@@ -3,35 +3,8 @@
 use super::table::{Descriptor, Pid, Place};
 use super::{COMPLETED, CRC16, DMAERR, UsbController, ctl, endpt, istat};
 use crate::cpu::Ram;
+use crate::usb_transaction::{Answer, Token};
 use crate::witness::{Trap, Witness};
-
-/// A transaction the host begins.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Token {
-    /// SETUP with its eight bytes, always DATA0.
-    Setup([u8; 8]),
-    /// OUT with its data and toggle.
-    Out(Vec<u8>, bool),
-    /// IN.
-    In,
-}
-
-/// What the device answers.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Answer {
-    /// Data, with its toggle; the host acknowledges it.
-    Data(Vec<u8>, bool),
-    /// Accepted.
-    Ack,
-    /// Accepted on the wire, but dropped: the toggle says that it was taken before.
-    Dropped,
-    /// Not now.
-    Nak,
-    /// Never.
-    Stall,
-    /// Nothing at all.
-    Silence,
-}
 
 /// A packet that the controller may take: the descriptor for it is the controller's.
 struct Transaction<'a> {
