@@ -1,6 +1,10 @@
 //! Single keys without a newline, as the course's programs send them. A colon begins a line that
 //! a later version may understand; this one passes over it, so that the letters in it press no
 //! keys.
+//!
+//! So it does with a line that begins with anything else: a terminal that nobody has told otherwise
+//! echoes what the board streams, and the digits in it would press keys without end. No line of the
+//! stream begins with a key.
 
 /// What the lines show. The digits are the course's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,45 +35,82 @@ pub enum Command {
     MeasureBias,
 }
 
-/// Bytes after a colon before it is taken for line noise.
-const LONGEST_LINE: u8 = 64;
+/// Bytes after which a line is taken for noise: more than the longest line of the stream.
+const LONGEST_LINE: u8 = 128;
+/// Calls of [`Parser::idle`] in a row after which a mistyped key is forgotten. An echo never pauses
+/// as long inside a line.
+const SILENCE: u8 = 20;
+
+/// What the bytes belong to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Place {
+    /// Each is a key.
+    #[default]
+    Outside,
+    /// A colon's line; so many may still follow.
+    Command(u8),
+    /// A line that is none of ours.
+    Foreign(u8),
+}
 
 /// Turns bytes from the host into commands, in whatever chunks they come.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Parser {
-    /// Bytes of a colon's line that may still follow; zero outside one.
-    to_skip: u8,
+    place: Place,
+    silence: u8,
 }
 
 impl Parser {
     /// Outside a line.
     pub const fn new() -> Self {
-        Self { to_skip: 0 }
+        Self {
+            place: Place::Outside,
+            silence: 0,
+        }
     }
 
-    /// Takes one byte. Unknown ones mean nothing.
+    /// Nothing came for a millisecond.
+    pub fn idle(&mut self) {
+        self.silence = self.silence.saturating_add(1);
+        if self.silence >= SILENCE && matches!(self.place, Place::Foreign(_)) {
+            self.place = Place::Outside;
+        }
+    }
+
+    /// Takes one byte.
     pub fn push(&mut self, byte: u8) -> Option<Command> {
-        if self.to_skip > 0 {
-            self.to_skip = match byte {
-                b'\n' | b'\r' => 0,
-                _ => self.to_skip - 1,
-            };
-            return None;
-        }
-        match byte {
-            b'0' => Some(Command::Mode(Mode::Info)),
-            b'1' => Some(Command::Mode(Mode::Flat)),
-            b'2' => Some(Command::Mode(Mode::ThreeD)),
-            b'3' => Some(Command::Mode(Mode::Gyro)),
-            b'4' => Some(Command::Mode(Mode::Accel)),
-            b'5' => Some(Command::Mode(Mode::Quaternion)),
-            b'r' => Some(Command::Reset),
-            b'b' => Some(Command::MeasureBias),
+        self.silence = 0;
+        let end_of_line = matches!(byte, b'\n' | b'\r');
+        self.place = match self.place {
+            Place::Outside => return self.key(byte),
+            Place::Command(0) | Place::Foreign(0) => Place::Outside,
+            _ if end_of_line => Place::Outside,
+            Place::Command(left) => Place::Command(left - 1),
+            Place::Foreign(left) => Place::Foreign(left - 1),
+        };
+        None
+    }
+
+    fn key(&mut self, byte: u8) -> Option<Command> {
+        let command = match byte {
+            b'0' => Command::Mode(Mode::Info),
+            b'1' => Command::Mode(Mode::Flat),
+            b'2' => Command::Mode(Mode::ThreeD),
+            b'3' => Command::Mode(Mode::Gyro),
+            b'4' => Command::Mode(Mode::Accel),
+            b'5' => Command::Mode(Mode::Quaternion),
+            b'r' => Command::Reset,
+            b'b' => Command::MeasureBias,
             b':' => {
-                self.to_skip = LONGEST_LINE;
-                None
+                self.place = Place::Command(LONGEST_LINE);
+                return None;
             }
-            _ => None,
-        }
+            b'\n' | b'\r' | b' ' => return None,
+            _ => {
+                self.place = Place::Foreign(LONGEST_LINE);
+                return None;
+            }
+        };
+        Some(command)
     }
 }

@@ -105,10 +105,10 @@ pub fn overruns(n: u32) -> Line {
     count("OVERRUNS", n)
 }
 
-/// `bias: x y z deg/s (still)`: for people, when the bias has been measured.
+/// `Bias: x y z deg/s (still)`: for people, when the bias has been measured.
 pub fn bias_measured(bias: AngularRate<f32>) -> Line {
     let mut line = Line::new();
-    push(&mut line, "bias:");
+    push(&mut line, "Bias:");
     for value in bias.dps().iter() {
         push(&mut line, " ");
         push_decimal::<3>(&mut line, *value);

@@ -94,7 +94,7 @@ fn a_still_start_takes_one_second() {
     let mut bench = Bench::new();
     bench.feed(2000, |_| LEVEL);
     assert_eq!(bench.lines[0], (1, "Measuring bias\n".into()));
-    let bias = "bias: 0.000 0.488 0.000 deg/s (still)\n";
+    let bias = "Bias: 0.000 0.488 0.000 deg/s (still)\n";
     assert_eq!(bench.lines[1], (1000, bias.into()));
     assert_eq!(
         bench.lines[2],
@@ -137,7 +137,7 @@ fn putting_the_board_down_late_still_gets_it_measured() {
     bench.feed(2500, handled);
     bench.feed(2000, |_| LEVEL);
     assert_eq!(bench.lines[1].0, 4000);
-    assert_eq!(bench.lines[1].1, "bias: 0.000 0.488 0.000 deg/s (still)\n");
+    assert_eq!(bench.lines[1].1, "Bias: 0.000 0.488 0.000 deg/s (still)\n");
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn b_measures_again_in_the_background() {
     bench.feed(1000, |_| warmer);
     assert_eq!(bench.lines[0], (1001, "Measuring bias\n".into()));
     assert_eq!(bench.tagged("QC").len(), 100, "the stream goes on");
-    assert_eq!(bench.tagged("bias: 0.000 0.977 0.000").len(), 1);
+    assert_eq!(bench.tagged("Bias: 0.000 0.977 0.000").len(), 1);
     // The old bias was in use until then, so it turned by 0.488° and turns no more.
     let before = bench.tracker.orientation();
     assert!((before.angle().to_degrees() - 0.488).abs() < 0.01);
@@ -437,6 +437,28 @@ fn the_words_of_a_line_press_no_keys() {
     assert_eq!(commands(b":rate 100\rb"), [Command::MeasureBias]);
     assert_eq!(commands(b":a:b\n"), []);
     // A colon that no newline follows does not silence the keys for ever.
-    let noise = [b":".as_slice(), &[b'r'; 64], b"r"].concat();
+    let noise = [b":".as_slice(), &[b'r'; 129], b"r"].concat();
     assert_eq!(commands(&noise), [Command::Reset]);
+}
+
+#[test]
+fn an_echo_of_the_stream_presses_no_keys_and_a_mistyped_key_is_soon_forgotten() {
+    let mut parser = Parser::new();
+    let stream = "vrduino 0.1.0\nMeasuring bias\nBias: 0.1 5 2 deg/s (still)\nQC 1.000 0.000 0.000 0.000\n\
+                  error: the IMU stopped answering; look at its wires\r\nnReads/sec: 1000\nGYR: 1 2 3\n";
+    for byte in stream.bytes() {
+        assert_eq!(parser.push(byte), None);
+    }
+    assert_eq!(parser.push(b'x'), None);
+    assert_eq!(parser.push(b'2'), None);
+    for _ in 0..20 {
+        parser.idle();
+    }
+    assert_eq!(parser.push(b'2'), Some(Command::Mode(Mode::ThreeD)));
+    // A line of ours may be typed by hand.
+    parser.push(b':');
+    for _ in 0..1000 {
+        parser.idle();
+    }
+    assert_eq!(parser.push(b'2'), None);
 }

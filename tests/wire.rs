@@ -100,7 +100,7 @@ fn the_info_block_has_five_decimals() {
     check(&wire::overruns(u32::MAX), "OVERRUNS: 4294967295\n");
     check(
         &wire::bias_measured(rest.gyro_bias),
-        "bias: 0.174 -0.199 0.446 deg/s (still)\n",
+        "Bias: 0.174 -0.199 0.446 deg/s (still)\n",
     );
 }
 

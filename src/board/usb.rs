@@ -96,8 +96,11 @@ impl Usb {
         NVIC::pend(Interrupt::USB0);
     }
 
-    /// The next command the host has typed.
+    /// The next command the host has typed. To be asked until there is none, once a millisecond.
     pub fn command(&mut self) -> Option<Command> {
+        if self.keys.peek().is_none() {
+            self.parser.idle();
+        }
         while let Some(key) = self.keys.dequeue() {
             if let Some(command) = self.parser.push(key) {
                 return Some(command);

@@ -37,7 +37,7 @@ fn a_host_that_stops_reading_costs_lines_but_no_samples() {
     let (whole, _) = run.text.rsplit_once('\n').expect("lines");
     for line in whole.lines() {
         let orientation = line.starts_with("QC ") && line.split(' ').count() == 5;
-        let text = ["vrduino ", "Measuring bias", "bias: "]
+        let text = ["vrduino ", "Measuring bias", "Bias: "]
             .iter()
             .any(|tag| line.starts_with(tag));
         assert!(orientation || text, "a torn line: {line:?}");
@@ -157,7 +157,7 @@ fn a_noisy_cable_costs_time_but_no_byte() {
     run.seconds(1.0);
     let (whole, _) = run.text.rsplit_once('\n').expect("lines");
     for line in whole.lines() {
-        let known = ["QC ", "FLAT ", "vrduino ", "Measuring bias", "bias: "];
+        let known = ["QC ", "FLAT ", "vrduino ", "Measuring bias", "Bias: "];
         assert!(known.iter().any(|tag| line.starts_with(tag)), "{line:?}");
     }
     assert_eq!((run.board.stop(), run.board.resets()), (None, 0));
@@ -211,4 +211,23 @@ fn reset_brings_the_heading_back_to_zero_and_keeps_the_tilt() {
     run.board.chip().host.send(b"r");
     run.seconds(0.1);
     assert!(degrees_between(run.last(), [1.0, 0.0, 0.0, 0.0]) < 0.5);
+}
+
+#[test]
+fn a_terminal_that_echoes_the_stream_presses_no_keys() {
+    let mut run = Run::still();
+    let mut echoed = 0;
+    for _ in 0..300 {
+        run.seconds(0.01);
+        let echo = run.text.as_bytes()[echoed..].to_vec();
+        echoed = run.text.len();
+        run.board.chip().host.send(&echo);
+    }
+    let known = ["QC ", "vrduino ", "Measuring bias", "Bias: "];
+    let (whole, _) = run.text.rsplit_once('\n').expect("lines");
+    for line in whole.lines() {
+        assert!(known.iter().any(|tag| line.starts_with(tag)), "{line:?}");
+    }
+    assert!(run.orientations.len() > 100);
+    assert_eq!(run.text.matches("Measuring bias").count(), 1);
 }

@@ -195,6 +195,11 @@ pub struct Script {
 }
 
 impl Arguments {
+    /// The function to time: the tracker's update of its estimators by one sample, unless another was named.
+    pub fn timed(&self) -> &str {
+        self.time.as_deref().unwrap_or("Tracker::track")
+    }
+
     /// The sensor on the board.
     pub fn part(&self) -> Part {
         let kind = match self.part {

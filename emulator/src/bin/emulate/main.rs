@@ -51,9 +51,6 @@ macro_rules! say {
     }};
 }
 use say;
-/// The tracker's update of its estimators by one sample: what is timed unless something else is asked for.
-const FILTER: &str = "Tracker::track";
-
 /// Exit code of a run that ended in a trap.
 const TRAPPED: u8 = 3;
 
@@ -110,7 +107,7 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
             Pace::Least
         },
         skip_polling: true,
-        timed_function: arguments.time.clone().unwrap_or_else(|| FILTER.into()),
+        timed_function: arguments.timed().into(),
     };
     let mut board = Board::new(image, setup);
     let tools = &arguments.tools;
@@ -179,7 +176,7 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     board
         .finish_watching()
         .map_err(|error| format!("the trace or the VCD file could not be written: {error}"))?;
-    session.report.print(&mut board);
+    session.report.print(&mut board, arguments.timed());
     session.end(&board, interrupted.load(Ordering::Relaxed))?;
     Ok(board.stop().cloned())
 }

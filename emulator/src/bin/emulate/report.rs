@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use vrduino_emulator::board::Board;
-use vrduino_emulator::chip::INTERRUPTS;
+use vrduino_emulator::chip::{INTERRUPTS, interrupt_name};
 use vrduino_emulator::time::{self, Ticks};
 
 use super::say;
@@ -52,8 +52,8 @@ impl Report {
         }
     }
 
-    /// Prints it to standard error.
-    pub fn print(&self, board: &mut Board) {
+    /// Prints it to standard error; `function` is the one that was timed.
+    pub fn print(&self, board: &mut Board, function: &str) {
         let (emulated, wall) = (
             time::seconds(board.now()),
             self.started.elapsed().as_secs_f64(),
@@ -122,8 +122,8 @@ impl Report {
         for (number, latency) in INTERRUPTS.iter().zip(&measure.latencies) {
             if latency.count > 0 {
                 say!(
-                    "irq {:3} taken {} times, after {:.2} µs at worst",
-                    number,
+                    "irq     {} taken {} times, after {:.2} µs at worst",
+                    interrupt_name(*number).unwrap_or("?"),
                     latency.count,
                     time::seconds(latency.worst) * 1e6
                 );
@@ -133,7 +133,7 @@ impl Report {
         let calls = &board.measure().calls;
         if calls.count > 0 {
             say!(
-                "timed   {} calls: {} instructions on average, {} at most; {} to {} cycles on average, {} to {} at worst",
+                "timed   {function}, {} calls: {} instructions on average, {} at most; {} to {} cycles on average, {} to {} at worst",
                 calls.count,
                 calls.instructions / calls.count,
                 calls.most_instructions,
