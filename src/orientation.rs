@@ -91,4 +91,9 @@ impl<T: RealField + Copy> TimeConstant<T> {
             T::zero()
         }
     }
+
+    /// α, the share of the gyro in one sample, from 0 to 1.
+    pub fn gyro_weight(self, sample_period: Seconds<T>) -> T {
+        T::one() - self.accelerometer_weight(sample_period)
+    }
 }

@@ -108,6 +108,29 @@ fn any_length_becomes_unit_length() {
     }
 }
 
+#[test]
+fn what_rounding_on_the_wire_took_is_put_back() {
+    // Section 5.4: three decimals, as the stream has them. Each is off by half of the last.
+    let mut random = Random(31);
+    for _ in 0..MANY {
+        let c = random_quaternion(&mut random);
+        let [w, x, y, z] = c.map(|c| (c * 1000.0).round() / 1000.0);
+        let q = unit(Quaternion::new(w, x, y, z)).expect("a direction");
+        assert_is_a_rotation(&q, 1e-12);
+        let off = angle_between(&matrix(&q), &matrix(&unit_quaternion::<f64>(c)));
+        assert!(off < 2.1e-3, "{off}");
+    }
+}
+
+#[test]
+fn the_length_of_the_2016_lecture_counts_one_part_twice() {
+    let q = Quaternion::new(0.6, 0.4, 0.0, 0.48_f64.sqrt());
+    assert!((q.norm() - 1.0).abs() < 1e-12);
+    // As printed: q0² + q1² + q2² + q2².
+    let printed = (q.w * q.w + q.i * q.i + q.j * q.j + q.j * q.j).sqrt();
+    assert!((printed - 0.7211).abs() < 1e-4);
+}
+
 fn axis_and_angle_make_the_matrix<T: RealField + Copy>(tolerance: f64) {
     let mut random = Random(24);
     for _ in 0..MANY {

@@ -137,3 +137,36 @@ fn a_tilt_of_a_ten_thousandth_is_resolved_in_single_precision() {
     assert_eq!(1e-4_f32.cos().acos(), 0.0);
     assert!((3e-4_f32.cos().acos() - 3.45e-4).abs() < 1e-6);
 }
+
+/// Eq. 23 as printed: φ and n/|n|.
+fn printed_correction(v: [f64; 3]) -> (f64, [f64; 3]) {
+    let length = v[0].hypot(v[2]);
+    (v[1].acos(), [-v[2] / length, 0.0, v[0] / length])
+}
+
+#[test]
+fn eq_23_as_printed_has_no_axis_at_the_poles() {
+    for (v, angle) in [([0.0, 1.0, 0.0], 0.0), ([0.0, -1.0, 0.0], PI)] {
+        assert!(printed_correction(v).1[0].is_nan());
+        assert!((tilt::correction::<f64>(force(v), 1.0).angle() - angle).abs() < 1e-9);
+    }
+    // Elsewhere it is the library's.
+    let mut random = Random(45);
+    for _ in 0..10_000 {
+        let v = random.direction();
+        let (phi, axis) = printed_correction(v);
+        let made = matrix(&tilt::correction::<f64>(force(v), 1.0));
+        assert!(largest_difference(&made, &rotation(axis, phi)) < 1e-7);
+    }
+}
+
+#[test]
+fn v_cross_up_is_as_long_as_the_sine_of_the_tilt() {
+    // The 2016 lecture equates v × (0, 1, 0) with the same vector normalised.
+    for phi in [0.1_f64, 1.0, 2.0] {
+        let v = Vector3::new(phi.sin() * 0.6, phi.cos(), phi.sin() * 0.8);
+        let n = v.cross(&Vector3::y());
+        assert!((n - Vector3::new(-v.z, 0.0, v.x)).amax() < 1e-15);
+        assert!((n.norm() - phi.sin()).abs() < 1e-12);
+    }
+}

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | eq. 14, 27 the vector quaternion of u | `Quaternion::from_imag(u)` |
 //! | eq. 25 i, j, k; eq. 30 q + p; eq. 31 qp | `+` and `*` of `Quaternion` |
-//! | eq. 26 unit length | [`unit`], `Quaternion::norm` |
+//! | eq. 26 unit length | [`unit()`], `Quaternion::norm` |
 //! | eq. 28 the conjugate | `Quaternion::conjugate`; of a unit quaternion it is the inverse |
 //! | eq. 29 the inverse | [`inverse`] |
 //! | eq. 13, 35 from axis and angle | [`from_axis_angle`] |
@@ -17,7 +17,7 @@
 //! | eq. 34 from a matrix | [`from_matrix`] |
 //! | section 5: “interpolate them” | [`slerp`] |
 //!
-//! A `Quaternion` is any four numbers; a `UnitQuaternion` is a rotation, and [`unit`] is the door
+//! A `Quaternion` is any four numbers; a `UnitQuaternion` is a rotation, and [`unit()`] is the door
 //! from one to the other. Eq. 15, 33 and 37 hold for unit quaternions only: eq. 33 scales its
 //! matrix by |q|².
 //!
