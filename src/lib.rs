@@ -70,3 +70,6 @@ pub mod command;
 
 /// The path of a sample, from counts to lines, called once per millisecond.
 pub mod tracker;
+
+/// What a viewer makes of the quaternion: a view matrix for each eye, and a projection.
+pub mod view;
