@@ -62,6 +62,9 @@ pub mod calibration;
 /// The estimators of the course notes, one per file.
 pub mod orientation;
 
+/// The documents' frames, layouts and products, each into the conventions above and back.
+pub mod frames;
+
 /// Lines of text for the host, to the byte.
 pub mod wire;
 

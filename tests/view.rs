@@ -1,14 +1,17 @@
 //! What a viewer draws with, against cameras worked out from geometry; and algorithms 1 to 3 of the
 //! course notes call by call as printed, to show where they go wrong.
 
+#[path = "view/camera.rs"]
+mod camera;
 #[path = "view/gl.rs"]
 mod gl;
-#[path = "view/rigid.rs"]
-mod rigid;
+#[path = "view/rotations.rs"]
+mod rotations;
 
+use camera::Camera;
 use gl::{Gl, printed_algorithm_2, printed_algorithm_3};
 use nalgebra::{Matrix4, Perspective3, Point3, Quaternion, RealField, UnitQuaternion, Vector3};
-use rigid::{Camera, Random, apply, axis_angle, product, rotation, transpose};
+use rotations::{Random, apply, axis_angle, product, rotation, transpose};
 use std::f64::consts::{FRAC_PI_2, PI};
 use vrduino::units::{Angle, Millimetres};
 use vrduino::view::axis_angle::AxisAngle;
@@ -55,7 +58,7 @@ fn viewer(neck: f64, head: f64) -> Viewer<f64> {
     }
 }
 
-fn camera(viewer: &Viewer<f64>, axis: [f64; 3], degrees: f64, eye: Eye) -> Camera {
+fn seen_by(viewer: &Viewer<f64>, axis: [f64; 3], degrees: f64, eye: Eye) -> Camera {
     let q = quaternion(axis, degrees.to_radians());
     Camera::of(&viewer.view(q, eye).expect("a view").to_homogeneous())
 }
@@ -247,7 +250,7 @@ fn the_eyes_stay_an_interpupillary_distance_apart_along_the_cameras_x() {
     let (mut random, viewer) = (Random(5), viewer(0.0, 0.0));
     for _ in 0..INPUTS {
         let (axis, angle) = axis_angle(&mut random);
-        let [left, right] = EYES.map(|(eye, _)| camera(&viewer, axis, angle.to_degrees(), eye));
+        let [left, right] = EYES.map(|(eye, _)| seen_by(&viewer, axis, angle.to_degrees(), eye));
         for (found, expected) in left.baseline_to(&right).into_iter().zip([64.0, 0.0, 0.0]) {
             assert!((found - expected).abs() < 1e-9);
         }
@@ -262,7 +265,7 @@ fn the_eyes_of_algorithm_2_as_printed_change_places_at_a_yaw_of_180_degrees() {
         let baseline = left.baseline_to(&right);
         assert!((baseline[0] - expected).abs() < 1e-9, "{yaw}: {baseline:?}");
         let viewer = viewer(0.0, 0.0);
-        let [left, right] = EYES.map(|(eye, _)| camera(&viewer, up, yaw, eye));
+        let [left, right] = EYES.map(|(eye, _)| seen_by(&viewer, up, yaw, eye));
         assert!((left.baseline_to(&right)[0] - 64.0).abs() < 1e-9);
     }
 }
@@ -297,7 +300,7 @@ fn looking_up_moves_the_eyes_back_and_down_and_algorithm_3_as_printed_drops_them
         eyes: InterpupillaryDistance::new(Millimetres(0.0)).expect("one eye"),
         ..viewer(150.0, 100.0)
     };
-    let right = camera(&viewer, ahead, 90.0, Eye::Left).position();
+    let right = seen_by(&viewer, ahead, 90.0, Eye::Left).position();
     let printed = printed_algorithm_3(ahead, 90.0, 150.0, 100.0, 0.0).position();
     for (found, expected) in [(right, [0.0, -50.0, 250.0]), (printed, [0.0, -250.0, 50.0])] {
         assert!(
@@ -307,7 +310,7 @@ fn looking_up_moves_the_eyes_back_and_down_and_algorithm_3_as_printed_drops_them
     }
     // Leaning the head over to the left moves it to the left and a little down.
     for lean in [0.1, 0.5, 1.2_f64] {
-        let leant = camera(&viewer, [0.0, 0.0, 1.0], lean.to_degrees(), Eye::Left).position();
+        let leant = seen_by(&viewer, [0.0, 0.0, 1.0], lean.to_degrees(), Eye::Left).position();
         let expected = [-150.0 * lean.sin(), -150.0 * (1.0 - lean.cos()), 0.0];
         assert!(
             (0..3).all(|i| (leant[i] - expected[i]).abs() < 1e-9),

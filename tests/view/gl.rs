@@ -1,6 +1,7 @@
 //! Algorithms 2 and 3 of the course notes, call by call as printed.
 
-use crate::rigid::{Camera, rotation};
+use crate::camera::Camera;
+use crate::rotations::rotation;
 use nalgebra::{Matrix4, Vector3};
 
 /// A fixed-function OpenGL: every call multiplies the current matrix from the right.
