@@ -90,7 +90,7 @@ fn axis_and_angle_are_right_where_equation_36_is_not() {
         assert!(printed([w, 0.0, 0.0, 0.0]).1[0].is_nan());
         let found = AxisAngle::from_quaternion(broken([w, 0.0, 0.0, 0.0])).expect("finite");
         assert_eq!(found.angle().degrees(), 0.0);
-        assert_eq!(found.axis(), Vector3::y_axis());
+        assert_eq!(found.axis(), Vector3::x_axis());
     }
     // The other quaternion of a turn by 10°.
     let (sin, cos) = 5_f64.to_radians().sin_cos();

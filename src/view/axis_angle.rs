@@ -35,7 +35,7 @@ impl<T: RealField + Copy> AxisAngle<T> {
     }
 
     /// Eq. 36, the short way: the angle is from 0° to 180°. The identity has no axis of its own
-    /// and gets y.
+    /// and gets x.
     ///
     /// The angle is 2 atan2(|(q_x, q_y, q_z)|, |q_w|) instead of 2 cos⁻¹(q_w): the same, and as good
     /// near zero as anywhere.
@@ -49,7 +49,7 @@ impl<T: RealField + Copy> AxisAngle<T> {
         let Some(axis) = direction(v) else {
             return Ok(Self {
                 angle: Angle::from_rad(T::zero()),
-                axis: Vector3::y_axis(),
+                axis: Vector3::x_axis(),
             });
         };
         let half = v.dot(&axis).atan2(q.w.abs());
