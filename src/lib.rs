@@ -50,6 +50,9 @@
 /// Quantities with units: a rate is never mistaken for an angle, nor degrees for radians.
 pub mod units;
 
+/// The documents' frames, layouts and products, each into the conventions above and back.
+pub mod frames;
+
 /// Raw counts to physical units, by the numbers of the data sheet.
 pub mod sensor;
 
@@ -70,3 +73,6 @@ pub mod command;
 
 /// The path of a sample, from counts to lines, called once per millisecond.
 pub mod tracker;
+
+/// What a viewer makes of the quaternion: a view matrix for each eye, and a projection.
+pub mod view;

@@ -17,6 +17,10 @@ const DEGREES_PER_RADIAN: f64 = 180.0 / core::f64::consts::PI;
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Seconds<T>(pub T);
 
+/// A length, in the unit the course notes give the eyes' distance in.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Millimetres<T>(pub T);
+
 /// An angle.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Angle<T>(T);

@@ -1,0 +1,87 @@
+//! Yaw, pitch and roll by their two definitions, and an angle by its two ranges.
+
+use crate::units::Angle;
+use nalgebra::RealField;
+
+/// The angles of the gyroscope-emulation paper (section 3.1), in [`NorthEastDown`]: yaw about
+/// z, then pitch about the new y, then roll about the new x.
+///
+/// [`NorthEastDown`]: super::axes::Axes::NorthEastDown
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TaitBryan<T> {
+    /// φ, about x, ahead: the right side down.
+    pub roll: Angle<T>,
+    /// θ, about y, to the right: the nose up.
+    pub pitch: Angle<T>,
+    /// ψ, about z, down: to the right.
+    pub yaw: Angle<T>,
+}
+
+/// The angles of the course notes (section 4, eq. 10), in [`YUp`]: yaw about y, then pitch about
+/// the new x, then roll about the new z.
+///
+/// [`YUp`]: super::axes::Axes::YUp
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct YawPitchRoll<T> {
+    /// θ_y, about y, up: to the left.
+    pub yaw: Angle<T>,
+    /// θ_x, about x, to the right: the nose up.
+    pub pitch: Angle<T>,
+    /// θ_z, about z, backwards: the left side down.
+    pub roll: Angle<T>,
+}
+
+impl<T: RealField + Copy> TaitBryan<T> {
+    /// The same orientation in the notes' angles. The order is the same, and so is the axis of
+    /// pitch; those of yaw and roll are opposite.
+    pub fn to_notes(self) -> YawPitchRoll<T> {
+        YawPitchRoll {
+            yaw: negated(self.yaw),
+            pitch: self.pitch,
+            roll: negated(self.roll),
+        }
+    }
+}
+
+impl<T: RealField + Copy> YawPitchRoll<T> {
+    /// The same orientation in the paper's angles.
+    pub fn to_paper(self) -> TaitBryan<T> {
+        TaitBryan {
+            roll: negated(self.roll),
+            pitch: self.pitch,
+            yaw: negated(self.yaw),
+        }
+    }
+}
+
+fn negated<T: RealField + Copy>(angle: Angle<T>) -> Angle<T> {
+    Angle::from_rad(-angle.rad())
+}
+
+/// The same angle from 0 up to a whole turn, the blog post's 0 ≤ θ ≤ 2π. None if it is not finite.
+pub fn whole_turn<T: RealField + Copy>(angle: Angle<T>) -> Option<Angle<T>> {
+    let angle = short_way(angle)?.rad();
+    Some(Angle::from_rad(if angle < T::zero() {
+        angle + T::two_pi()
+    } else {
+        angle
+    }))
+}
+
+/// The same angle between half a turn one way and half a turn the other, what is to be corrected
+/// by a fraction. None if it is not finite.
+pub fn short_way<T: RealField + Copy>(angle: Angle<T>) -> Option<Angle<T>> {
+    let angle = angle.rad();
+    if !angle.is_finite() {
+        return None;
+    }
+    // The remainder is exact, however many turns there were, and has the sign of the angle.
+    let rest = angle % T::two_pi();
+    Some(Angle::from_rad(if rest > T::pi() {
+        rest - T::two_pi()
+    } else if rest < -T::pi() {
+        rest + T::two_pi()
+    } else {
+        rest
+    }))
+}
