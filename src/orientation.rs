@@ -33,6 +33,9 @@ mod rotation;
 /// without a sample rate, a time does: α = τ/(τ + Δt), so τ = αΔt/(1 − α). (The sentence before
 /// eq. 24, that α “defines how aggressively tilt correction is being applied”, describes 1 − α:
 /// with α = 1 there is none.)
+///
+/// A weight outside 0 to 1 has no meaning, and one that is not a number none either: the filter
+/// takes the nearer end, or believes the gyro.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeConstant<T>(Seconds<T>);
 
@@ -62,7 +65,15 @@ impl<T: RealField + Copy> TimeConstant<T> {
 
     /// 1 − α, the share of the accelerometer in one sample: Δt/(τ + Δt), not one minus τ/(τ + Δt),
     /// which in single precision would keep three digits of it.
+    ///
+    /// From 0 to 1, whatever the time constant and the period are.
     pub fn accelerometer_weight(self, sample_period: Seconds<T>) -> T {
-        sample_period.0 / (self.0.0 + sample_period.0)
+        let weight = sample_period.0 / (self.0.0 + sample_period.0);
+        // Not a number is not above zero either.
+        if weight > T::zero() {
+            weight.min(T::one())
+        } else {
+            T::zero()
+        }
     }
 }
