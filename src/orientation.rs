@@ -4,6 +4,7 @@
 //! |---|---|---|---|
 //! | `flatland` | section 3, eq. 6–9 | one angle, from both sensors | the other two |
 //! | `angles` | section 4, eq. 10–12 | pitch and roll, from the accelerometer | yaw, and calm |
+//! | `euler` | section 4, eq. 10; 2016 lecture | all three, as long as they hardly turn at once | how turns combine |
 //! | `gyro` | section 5.1, eq. 17–18 | all three, from the gyro | an end to its drift |
 //! | `tilt` | section 5.2, eq. 20–23 | how far from level the gyro has drifted | yaw |
 //! | `complementary` | section 5.3, eq. 24 | all three, tilt without drift | a reference for yaw |
@@ -17,6 +18,8 @@ use nalgebra::RealField;
 pub mod flatland;
 
 pub mod angles;
+
+pub mod euler;
 
 pub mod gyro;
 

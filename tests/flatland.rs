@@ -118,7 +118,7 @@ fn the_fused_angle_lies_between_its_two_sources_at_every_angle() {
         let roll = flat.update(&reading(turned / 0.01, tilted(shown)));
         let by_gyro = start + turned;
         let arc = (shown - by_gyro).sin().atan2((shown - by_gyro).cos());
-        if arc.abs() > 3.141 {
+        if arc.abs() > PI - 1e-3 {
             continue; // Opposite: either way is as short.
         }
         let expected = by_gyro + (1.0 - alpha) * arc;

@@ -67,7 +67,7 @@ fn every_count_of_every_range_has_the_value_of_eq_5_with_the_divisor_of_the_data
 fn eq_5_as_printed_leaves_the_range_and_misses_the_sensitivity_of_the_data_sheet() {
     // One count below the end: −250.0076 °/s of a ±250 °/s range.
     assert!((printed_eq_5(i16::MIN, 250.0) + 250.007_63).abs() < 1e-5);
-    assert!((printed_eq_5(i16::MIN, 2000.0) + 2000.061_04).abs() < 1e-5);
+    assert!((printed_eq_5(i16::MIN, 2000.0) + 2_000.061_04).abs() < 1e-5);
     // Data sheet, table 2: 16384 counts are 1 g at ±2 g, exactly.
     assert!((printed_eq_5(16384, 2.0) - 1.000_030_5).abs() < 1e-7);
     let g2 = Ranges {
