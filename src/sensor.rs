@@ -12,17 +12,17 @@
 //!
 //! [`RawSample`]: crate::sensor::RawSample
 //! [`Sample`]: crate::sensor::Sample
+//! [`magnetometer`]: crate::sensor::magnetometer
+//! [`measurement`]: crate::sensor::measurement
+//! [`simulation`]: crate::sensor::simulation
 
 use crate::units::{AngularRate, METRES_PER_S2_PER_G, RADIANS_PER_DEGREE, SpecificForce};
 use nalgebra::{RealField, Vector3, convert, try_convert};
 
-/// The magnetometer of the package: its own scale, factory adjustment and axes.
 pub mod magnetometer;
 
-/// Eq. 1 to 4 and their inverse: mixing matrix, bias and noise.
 pub mod measurement;
 
-/// Readings of a sensor that does not exist, for tests.
 pub mod simulation;
 
 /// INT_STATUS: the first register of the burst that makes up a sample.

@@ -8,8 +8,6 @@ use super::flatland::shortest_turn;
 use crate::units::{Angle, AngularRate};
 use nalgebra::{Matrix4, Point3, RealField, Rotation3, UnitQuaternion, Vector3, Vector4, convert};
 
-/// The 2016 lecture's dead reckoning and complementary filter on Euler angles: wrong whenever axes
-/// turn together.
 pub mod lecture;
 
 /// Yaw about y, then pitch about x, then roll about z, each about the axes the turn before has left

@@ -6,10 +6,8 @@ use crate::calibration::Reading;
 use crate::units::{Angle, Seconds, SpecificForce};
 use nalgebra::RealField;
 
-/// How far the estimates go astray, in closed form.
 pub mod error;
 
-/// The complementary filter as the pair of filters it is.
 pub mod response;
 
 /// Three estimates of the same angle, each from −180° to 180° so that they can be plotted on top

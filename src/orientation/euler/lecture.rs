@@ -1,16 +1,20 @@
 //! The trackers of the 2016 lecture (“Remember: Dead Reckoning with Gyro” and “Tilt Correction with
-//! Complementary Filtering”), which integrate each axis of the gyro into an angle of its own.
+//! Complementary Filtering”), which integrate each axis of the gyro into an angle of its own: wrong
+//! whenever axes turn together.
 //!
-//! They are here to be looked at beside [`super::super::complementary`], not to be used. The rate
-//! about the body's x is the rate of pitch only while roll is zero: rolled by 90°, it is that of yaw.
-//! A head that is rolled by 10° and nods by 20° ends 3.5° off; at a roll of 90° a quarter turn ends
-//! 120° off. Near straight up and straight down (gimbal lock) the accelerometer's roll jumps besides,
-//! and the filter follows it.
+//! They are here to be looked at beside [`complementary`], not to be used. The rate about the body's
+//! x is the rate of pitch only while roll is zero: rolled by 90°, it is that of yaw. A head that is
+//! rolled by 10° and nods by 20° ends 3.5° off; at a roll of 90° a quarter turn ends 120° off. Near
+//! straight up and straight down (gimbal lock) the accelerometer's roll jumps besides, and the
+//! filter follows it.
 //!
 //! That is the lecture's method, and it is left as it is. What is put right is the rest: the
 //! difference of two angles is wrapped before it is blended, as in flatland, and pitch and roll are
-//! a pair that belongs together ([`super::super::angles`]). The slides reckon in degrees; the angles
-//! here have a type, and it does not matter.
+//! a pair that belongs together ([`angles`]). The slides reckon in degrees; the angles here have a
+//! type, and it does not matter.
+//!
+//! [`angles`]: crate::orientation::angles
+//! [`complementary`]: crate::orientation::complementary
 
 use super::EulerAngles;
 use crate::calibration::Reading;
