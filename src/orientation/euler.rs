@@ -18,7 +18,7 @@ pub struct EulerAngles<T> {
     pub yaw: Angle<T>,
     /// θ_x: up is positive.
     pub pitch: Angle<T>,
-    /// θ_z: to the left, counter-clockwise as the viewer sees it, is positive.
+    /// θ_z: to the left is positive.
     pub roll: Angle<T>,
 }
 
