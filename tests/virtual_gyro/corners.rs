@@ -3,7 +3,7 @@
 use crate::reference::*;
 use nalgebra::{RealField, Vector3, convert};
 use std::f64::consts::{FRAC_PI_2, PI};
-use vrduino::units::{Seconds, SpecificForce};
+use vrduino::units::{MagneticField, Seconds, SpecificForce};
 use vrduino::virtual_gyro::{
     Estimate, Fields, GimbalLock, Method, NoAttitude, NoEstimate, Settings, VirtualGyro,
 };
@@ -32,7 +32,7 @@ fn feed<T: RealField + Copy>(
     let fields = seen(attitude, DIP);
     gyro.update(
         SpecificForce::from_m_per_s2(-fields.gravity),
-        Some(fields.magnetic),
+        Some(MagneticField::from_microtesla(fields.magnetic)),
     )
 }
 
@@ -180,7 +180,7 @@ fn survives<T: RealField + Copy>() {
         for _ in 0..1000 {
             let mut any = || convert::<f64, T>(anything(&mut random));
             let force = SpecificForce::from_m_per_s2(Vector3::new(any(), any(), any()));
-            let field = Vector3::new(any(), any(), any());
+            let field = MagneticField::from_microtesla(Vector3::new(any(), any(), any()));
             let field = (random.unit() < 0.9).then_some(field);
             let Ok(estimate) = gyro.update(force, field) else {
                 continue;
@@ -224,17 +224,18 @@ fn after_samples_without_attitude_the_velocity_is_the_mean_since_the_last() {
     }
     let level = seen::<f64>(&r([0.0; 3]), DIP);
     let force = SpecificForce::from_m_per_s2(-level.gravity);
+    let field = MagneticField::from_microtesla;
     for _ in 0..9 {
         let absent = gyro.update(force, None);
         assert_eq!(
             absent,
             Err(NoEstimate::Attitude(NoAttitude::NoMagneticField))
         );
-        let broken = gyro.update(force, Some(Vector3::new(f64::NAN, 0.0, 0.0)));
+        let broken = gyro.update(force, Some(field(Vector3::new(f64::NAN, 0.0, 0.0))));
         assert_eq!(broken, Err(NoEstimate::Attitude(NoAttitude::NotFinite)));
     }
     let turned = gyro
-        .update(force, Some(level.magnetic + Vector3::y()))
+        .update(force, Some(field(level.magnetic + Vector3::y())))
         .unwrap();
     let before = sandwich(scalar_last(&turned.orientation));
     let degrees = degrees_between(&before, &r([0.0; 3]));

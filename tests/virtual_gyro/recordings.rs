@@ -4,12 +4,12 @@
 use crate::reference::*;
 use nalgebra::Vector3;
 use std::path::PathBuf;
-use vrduino::units::{Seconds, SpecificForce};
+use vrduino::units::{MagneticField, Seconds, SpecificForce};
 use vrduino::virtual_gyro::butterworth::CutOff;
 use vrduino::virtual_gyro::{
     Estimate, GimbalLock, GravityExtraction, Method, Settings, VirtualGyro,
 };
-use vrduino_emulator::motion::{self, Instant, Motion};
+use vrduino_emulator::motion::{self, Instant};
 
 /// Samples a second that are taken: every eighth of the recording. A rate is the difference of two
 /// attitudes over the time between them, so that at the full 286 Hz the noise of the sensors, and
@@ -39,7 +39,9 @@ type Gyro = VirtualGyro<f64, 5, 5>;
 fn run(mut gyro: Gyro, instants: &[Instant]) -> Vec<Option<Estimate<f64>>> {
     let feed = |instant: &Instant| {
         let force = SpecificForce::from_m_per_s2(Vector3::from(instant.force));
-        gyro.update(force, instant.field.map(Vector3::from)).ok()
+        let field = instant.field.map(Vector3::from);
+        gyro.update(force, field.map(MagneticField::from_microtesla))
+            .ok()
     };
     instants.iter().map(feed).collect()
 }
@@ -122,7 +124,13 @@ fn follows(name: &str) -> Score {
     let by_fixed = best(&matrix, &instants);
     let adaptive = run(Gyro::new(settings(Method::Matrix)), &instants);
     let by_adaptive = best(&adaptive, &instants);
-    eprintln!("{name}\n  fixed    {by_fixed:.2?}\n  adaptive {by_adaptive:.2?}");
+    for (cut_off, score) in [("fixed", by_fixed), ("adaptive", by_adaptive)] {
+        eprintln!(
+            "{name}, {cut_off} cut-off: gyro {:.1} °/s, error {:.1} °/s rms, correlation {:.2}, \
+             attitude {:.1}° rms, {} samples late",
+            score.recorded, score.error, score.correlation, score.attitude, score.lag
+        );
+    }
     by_fixed
 }
 
