@@ -1,17 +1,14 @@
-//! Flatland and the angles of the accelerometer follow the course notes, and no input makes them
-//! return anything but angles.
+//! No input makes flatland and the angles of the accelerometer anything but angles.
 
 mod rotations;
 
-use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
+use nalgebra::{RealField, convert};
 use rotations::{Random, anything, reading};
-use std::f64::consts::{FRAC_PI_2, PI};
 use vrduino::orientation::TimeConstant;
 use vrduino::orientation::angles::pitch_and_roll;
 use vrduino::orientation::flatland::Flatland;
-use vrduino::units::{Seconds, SpecificForce};
+use vrduino::units::Seconds;
 
-const G: f64 = 9.81;
 const DT: f64 = 0.001;
 
 fn survives_anything<T: RealField + Copy>() {
