@@ -400,3 +400,19 @@ fn no_time_no_turn_and_no_input_leaves_the_circle() {
         }
     }
 }
+
+fn huge_turns_stay_on_the_circle<T: RealField + Copy>(largest_exponent: f64) {
+    let mut random = Random(4);
+    for _ in 0..100_000 {
+        let turn: T = convert(10.0_f64.powf(random.between(0.0, largest_exponent)));
+        let (zero, angle) = (Angle::from_rad(T::zero()), Angle::from_rad(turn));
+        assert!(shortest_turn(zero, angle).rad().abs() <= T::pi());
+        assert!(shortest_turn(angle, zero).rad().abs() <= T::pi());
+    }
+}
+
+#[test]
+fn turns_of_any_size_stay_on_the_circle() {
+    huge_turns_stay_on_the_circle::<f64>(308.0);
+    huge_turns_stay_on_the_circle::<f32>(38.0);
+}

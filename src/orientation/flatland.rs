@@ -105,12 +105,17 @@ pub fn shortest_turn<T: RealField + Copy>(from: Angle<T>, to: Angle<T>) -> Angle
     Angle::from_rad(wrapped(to.rad() - from.rad()))
 }
 
-/// The same angle between −π and π.
-fn wrapped<T: RealField + Copy>(angle: T) -> T {
-    if angle.abs() <= T::pi() {
-        return angle;
+/// The same angle between −π and π. Not finite if the angle is not.
+fn wrapped<T: RealField + Copy>(mut angle: T) -> T {
+    // Once is enough for any angle of this world. One so large that its own rounding is more than a
+    // turn leaves a rest, smaller by the digits of the scalar; f64::MAX is down after twenty.
+    for _ in 0..32 {
+        if angle.abs() <= T::pi() {
+            break;
+        }
+        angle -= T::two_pi() * (angle / T::two_pi()).round();
     }
-    angle - T::two_pi() * (angle / T::two_pi()).round()
+    angle
 }
 
 fn wrapped_or<T: RealField + Copy>(angle: T, otherwise: Angle<T>) -> Angle<T> {
