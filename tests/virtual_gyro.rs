@@ -27,3 +27,9 @@ mod quaternion;
 
 #[path = "virtual_gyro/velocity.rs"]
 mod velocity;
+
+#[path = "virtual_gyro/corners.rs"]
+mod corners;
+
+#[path = "virtual_gyro/recordings.rs"]
+mod recordings;

@@ -1,6 +1,6 @@
 //! What the two sensors see of the earth (section 3.1).
 
-use crate::units::{Angle, METRES_PER_S2_PER_G, SpecificForce};
+use crate::units::{Angle, METRES_PER_S2_PER_G, MagneticField, SpecificForce};
 use core::fmt;
 use nalgebra::{RealField, Rotation3, Vector3, convert};
 
@@ -13,7 +13,7 @@ const FREE_FALL_G: f64 = 0.06;
 pub struct Earth<T> {
     /// g, in m/s². (The paper says newtons; it is an acceleration.)
     pub gravity: T,
-    /// B, in any unit that the magnetometer's readings share.
+    /// B, in µT.
     pub field: T,
     /// δ: how far the magnetic field points below the horizon.
     pub dip: Angle<T>,
@@ -44,17 +44,17 @@ impl<T: RealField + Copy> Earth<T> {
 pub struct Fields<T> {
     /// m/s², pointing **down**.
     pub gravity: Vector3<T>,
-    /// In any unit: only its direction plays a part.
+    /// µT; only its direction plays a part.
     pub magnetic: Vector3<T>,
 }
 
 impl<T: RealField + Copy> Fields<T> {
     /// Readings in the device frame: g_d = −a, since a resting accelerometer reads the force that
     /// holds it up.
-    pub fn from_readings(force: SpecificForce<T>, magnetic: Vector3<T>) -> Self {
+    pub fn from_readings(force: SpecificForce<T>, magnetic: MagneticField<T>) -> Self {
         Self {
             gravity: -force.m_per_s2(),
-            magnetic,
+            magnetic: magnetic.microtesla(),
         }
     }
 

@@ -11,6 +11,9 @@ use nalgebra::RealField;
 /// The magnetic field that comes out is the one measured with the gravity that does. An even
 /// window has no middle, and does not compile:
 ///
+/// ```
+/// let filter = vrduino::virtual_gyro::median::MedianByNorm::<f32, 5>::new();
+/// ```
 /// ```compile_fail
 /// let filter = vrduino::virtual_gyro::median::MedianByNorm::<f32, 4>::new();
 /// ```

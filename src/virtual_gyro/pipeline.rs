@@ -7,9 +7,9 @@ use super::attitude_quaternion as quaternion;
 use super::fields::{Directions, Fields, NoAttitude};
 use super::gravity::GravityExtraction;
 use super::matrix;
-use crate::units::{Seconds, SpecificForce};
+use crate::units::{MagneticField, Seconds, SpecificForce};
 use core::fmt;
-use nalgebra::{RealField, UnitQuaternion, Vector3};
+use nalgebra::{RealField, UnitQuaternion};
 
 /// Which of the paper's two ways from fields to attitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,7 +77,7 @@ impl<T: RealField + Copy, const MEDIAN: usize, const MEAN: usize> VirtualGyro<T,
         }
     }
 
-    /// One sample of both sensors, axes aligned, in the device frame; `magnetic` in any unit.
+    /// One sample of both sensors, axes aligned, in the device frame.
     ///
     /// It is to be called once each sample period. The filters want both readings of the same
     /// instant: with a slower magnetometer, call at its pace. Where there is no new reading, pass
@@ -89,7 +89,7 @@ impl<T: RealField + Copy, const MEDIAN: usize, const MEAN: usize> VirtualGyro<T,
     pub fn update(
         &mut self,
         force: SpecificForce<T>,
-        magnetic: Option<Vector3<T>>,
+        magnetic: Option<MagneticField<T>>,
     ) -> Result<Estimate<T>, NoEstimate> {
         if let Some(last) = &mut self.last {
             last.age.0 += self.settings.sample_period.0;
