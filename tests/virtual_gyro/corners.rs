@@ -4,8 +4,10 @@ use crate::reference::*;
 use nalgebra::{RealField, Vector3, convert};
 use std::f64::consts::{FRAC_PI_2, PI};
 use vrduino::units::{MagneticField, Seconds, SpecificForce};
+use vrduino::virtual_gyro::butterworth::CutOff;
 use vrduino::virtual_gyro::{
-    Estimate, Fields, GimbalLock, Method, NoAttitude, NoEstimate, Settings, VirtualGyro,
+    Estimate, Fields, GimbalLock, GravityExtraction, Method, NoAttitude, NoEstimate, Settings,
+    VirtualGyro,
 };
 
 const PERIOD: f64 = 0.01;
@@ -83,6 +85,51 @@ fn a_steady_turn_about_the_vertical_is_its_rate_in_both_frames_and_by_both_metho
                 let down = apply(&r([tilt[0], tilt[1], 0.0]), [0.0, 0.0, 2.0]);
                 assert!(apart(array(velocity.device.rad_per_s()), down) < 1e-6);
             }
+        }
+    }
+}
+
+#[test]
+fn figure_8_of_a_tumbling_device_the_rate_is_that_of_a_gyro_fixed_to_it() {
+    // Body rates as a gyro would read them, integrated in small steps in matrices; windows of one
+    // and F_c = F_e/4, where the low-pass is the mean of two samples: half a sample late. The
+    // tumble passes every attitude.
+    let step = 1e-3;
+    let rate = |t: f64| {
+        [
+            2.0 * (0.7 * t).sin(),
+            1.5 + (1.3 * t).cos(),
+            (0.4 * t).sin() - 1.0,
+        ]
+    };
+    for method in [METHODS[0], METHODS[2]] {
+        let cut_off = CutOff::new(0.25).unwrap();
+        let mut gyro = VirtualGyro::<f64, 1, 1>::with_extraction(
+            Settings {
+                sample_period: Seconds(step),
+                method,
+            },
+            GravityExtraction::with_cut_off(cut_off),
+        );
+        let mut a = transpose(&r([0.3, -0.4, 1.1])); // device to reference
+        for k in 0..60_000 {
+            let fields = seen(&transpose(&a), DIP);
+            let found = gyro.update(
+                SpecificForce::from_m_per_s2(-fields.gravity),
+                Some(MagneticField::from_microtesla(fields.magnetic)),
+            );
+            // From the middle of one step to the middle of the next.
+            let now = rate(step * (f64::from(k) - 1.0));
+            if k >= 10 {
+                let velocity = found.unwrap().velocity.unwrap();
+                let device = array(velocity.device.rad_per_s());
+                assert!(apart(device, now) < 1e-5, "{k}: {device:?}, {now:?}");
+                let reference = array(velocity.reference.rad_per_s());
+                assert!(apart(reference, apply(&a, device)) < 1e-2);
+            }
+            let w = rate(step * (f64::from(k) + 0.5));
+            let size = w.iter().map(|c| c * c).sum::<f64>().sqrt();
+            a = product(&a, &about(w.map(|c| c / size), size * step));
         }
     }
 }
