@@ -4,9 +4,16 @@
 //! |---|---|---|---|
 //! | `flatland` | section 3, eq. 6–9 | one angle, from both sensors | the other two |
 //! | `angles` | section 4, eq. 10–12 | pitch and roll, from the accelerometer | yaw, and calm |
+//! | `quaternion` | section 5, eq. 13–16; appendix A | how rotations are reckoned with | |
+//! | `accelerometer` | section 5.2, figure 7 | tilt, from the accelerometer | yaw, and calm |
 //! | `gyro` | section 5.1, eq. 17–18 | all three, from the gyro | an end to its drift |
 //! | `tilt` | section 5.2, eq. 20–23 | how far from level the gyro has drifted | yaw |
 //! | `complementary` | section 5.3, eq. 24 | all three, tilt without drift | a reference for yaw |
+//! | `yaw` | blog post | how far from north the heading has drifted | tilt |
+//! | `drift` | blog post | all three, with a magnetometer none drifts | |
+//!
+//! The last two follow the post “Headset Tracking for VR/AR”, which takes the same path as the
+//! notes and goes on to the magnetometer.
 //!
 //! Every estimator keeps three things apart: what a person chooses (a time constant, the
 //! sample period), what follows from it, and the state that evolves.
@@ -18,11 +25,19 @@ pub mod flatland;
 
 pub mod angles;
 
+pub mod quaternion;
+
+pub mod accelerometer;
+
 pub mod gyro;
 
 pub mod tilt;
 
 pub mod complementary;
+
+pub mod yaw;
+
+pub mod drift;
 
 mod rotation;
 
@@ -33,6 +48,9 @@ mod rotation;
 /// without a sample rate, a time does: α = τ/(τ + Δt), so τ = αΔt/(1 − α). (The sentence before
 /// eq. 24, that α “defines how aggressively tilt correction is being applied”, describes 1 − α:
 /// with α = 1 there is none.)
+///
+/// A weight outside 0 to 1 has no meaning, and one that is not a number none either: the filter
+/// takes the nearer end, or believes the gyro.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeConstant<T>(Seconds<T>);
 
@@ -62,7 +80,20 @@ impl<T: RealField + Copy> TimeConstant<T> {
 
     /// 1 − α, the share of the accelerometer in one sample: Δt/(τ + Δt), not one minus τ/(τ + Δt),
     /// which in single precision would keep three digits of it.
+    ///
+    /// From 0 to 1, whatever the time constant and the period are.
     pub fn accelerometer_weight(self, sample_period: Seconds<T>) -> T {
-        sample_period.0 / (self.0.0 + sample_period.0)
+        let weight = sample_period.0 / (self.0.0 + sample_period.0);
+        // Not a number is not above zero either.
+        if weight > T::zero() {
+            weight.min(T::one())
+        } else {
+            T::zero()
+        }
+    }
+
+    /// α, the share of the gyro in one sample, from 0 to 1.
+    pub fn gyro_weight(self, sample_period: Seconds<T>) -> T {
+        T::one() - self.accelerometer_weight(sample_period)
     }
 }

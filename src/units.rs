@@ -99,4 +99,38 @@ impl<T: RealField + Copy> SpecificForce<T> {
     pub fn m_per_s2(self) -> Vector3<T> {
         self.0
     }
+
+    /// In multiples of g (see [`METRES_PER_S2_PER_G`]).
+    pub fn g(self) -> Vector3<T> {
+        self.0 / convert::<f64, T>(METRES_PER_S2_PER_G)
+    }
+}
+
+/// 1 G is 100 µT exactly: 1 T is 10⁴ G.
+pub const MICROTESLA_PER_GAUSS: f64 = 100.0;
+
+/// What a magnetometer measures: the magnetic flux density along each of three axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MagneticField<T>(Vector3<T>);
+
+impl<T: RealField + Copy> MagneticField<T> {
+    /// From microtesla, the unit of the data sheet.
+    pub fn from_microtesla(microtesla: Vector3<T>) -> Self {
+        Self(microtesla)
+    }
+
+    /// From gauss, the other unit of the course notes (section 1).
+    pub fn from_gauss(gauss: Vector3<T>) -> Self {
+        Self(gauss * convert::<f64, T>(MICROTESLA_PER_GAUSS))
+    }
+
+    /// In microtesla.
+    pub fn microtesla(self) -> Vector3<T> {
+        self.0
+    }
+
+    /// In gauss.
+    pub fn gauss(self) -> Vector3<T> {
+        self.0 / convert::<f64, T>(MICROTESLA_PER_GAUSS)
+    }
 }

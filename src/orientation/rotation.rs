@@ -69,12 +69,19 @@ pub(super) fn renormalised<T: RealField + Copy>(q: UnitQuaternion<T>) -> UnitQua
     if (n - T::one()).abs() < convert(1e-5) {
         return UnitQuaternion::new_unchecked(q * (convert::<f64, T>(1.5) - n * convert(0.5)));
     }
-    // The largest component first, so that the square neither overflows nor vanishes.
+    finite_unit(q).unwrap_or_else(UnitQuaternion::identity)
+}
+
+/// The rotation whose quaternion points the same way. None where there is no way to point: at
+/// zero, and at what is not finite.
+pub(super) fn finite_unit<T: RealField + Copy>(q: Quaternion<T>) -> Option<UnitQuaternion<T>> {
     let largest = q.coords.amax();
     let finite = q.coords.iter().all(|component| component.is_finite());
     if !finite || largest.is_zero() {
-        return UnitQuaternion::identity();
+        return None;
     }
+    // The largest component becomes ±1, so that the square neither overflows nor vanishes.
     let scaled = q / largest;
-    UnitQuaternion::new_unchecked(scaled / scaled.norm_squared().sqrt())
+    let length = scaled.norm_squared().sqrt();
+    Some(UnitQuaternion::new_unchecked(scaled / length))
 }

@@ -38,6 +38,12 @@ pub fn in_world<T: RealField + Copy>(
     SpecificForce::from_m_per_s2(orientation * force.m_per_s2())
 }
 
+/// Whether a force points anywhere: it is not zero, and finite.
+pub fn has_direction<T: RealField + Copy>(force: SpecificForce<T>) -> bool {
+    let v = force.m_per_s2();
+    v.iter().all(|component| component.is_finite()) && !v.amax().is_zero()
+}
+
 /// φ n/|n| of eq. 23.
 fn phi_n<T: RealField + Copy>(v: Vector3<T>) -> Vector3<T> {
     if v.y > T::zero() {
@@ -62,10 +68,10 @@ fn phi_n<T: RealField + Copy>(v: Vector3<T>) -> Vector3<T> {
 /// The same for any v, with φ = atan2(√(v_x² + v_z²), v_y) for eq. 23's cos⁻¹(v_y): the same
 /// angle, but an arc cosine loses half its digits near zero.
 fn phi_n_anywhere<T: RealField + Copy>(v: Vector3<T>) -> Vector3<T> {
-    let largest = v.amax();
-    if largest.is_zero() || !v.iter().all(|component| component.is_finite()) {
+    if !has_direction(SpecificForce::from_m_per_s2(v)) {
         return Vector3::zeros();
     }
+    let largest = v.amax();
     // The largest component becomes ±1, so that the squares neither overflow nor all vanish.
     let u = v / largest;
     let length = (u.x * u.x + u.z * u.z).sqrt();
