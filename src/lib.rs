@@ -50,6 +50,9 @@
 /// Quantities with units: a rate is never mistaken for an angle, nor degrees for radians.
 pub mod units;
 
+/// The documents' frames, layouts and products, each into the conventions above and back.
+pub mod frames;
+
 /// Raw counts to physical units, by the numbers of the data sheet.
 pub mod sensor;
 
@@ -61,9 +64,6 @@ pub mod calibration;
 
 /// The estimators of the course notes, one per file.
 pub mod orientation;
-
-/// The documents' frames, layouts and products, each into the conventions above and back.
-pub mod frames;
 
 /// Lines of text for the host, to the byte.
 pub mod wire;
