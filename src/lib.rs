@@ -65,6 +65,9 @@ pub mod calibration;
 /// The estimators of the course notes, one per file.
 pub mod orientation;
 
+/// A gyro made of an accelerometer and a magnetometer.
+pub mod virtual_gyro;
+
 /// Lines of text for the host, to the byte.
 pub mod wire;
 

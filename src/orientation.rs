@@ -4,6 +4,7 @@
 //! |---|---|---|---|
 //! | `flatland` | section 3, eq. 6–9 | one angle, from both sensors | the other two |
 //! | `angles` | section 4, eq. 10–12 | pitch and roll, from the accelerometer | yaw, and calm |
+//! | `euler` | section 4, eq. 10; 2016 lecture | all three, as long as they hardly turn at once | how turns combine |
 //! | `quaternion` | section 5, eq. 13–16; appendix A | how rotations are reckoned with | |
 //! | `accelerometer` | section 5.2, figure 7 | tilt, from the accelerometer | yaw, and calm |
 //! | `gyro` | section 5.1, eq. 17–18 | all three, from the gyro | an end to its drift |
@@ -24,6 +25,8 @@ use nalgebra::RealField;
 pub mod flatland;
 
 pub mod angles;
+
+pub mod euler;
 
 pub mod quaternion;
 

@@ -4,13 +4,26 @@
 //!
 //! Raw counts ([`RawSample`]) and physical values ([`Sample`]) are different types, so
 //! “converted twice” and “not converted” do not compile. Gyro and accelerometer share one die and
-//! its right-handed axes, which are the body frame: nothing is swapped or negated.
+//! its right-handed axes, which are the body frame: nothing is swapped or negated. The
+//! magnetometer is another die with other axes and another scale: [`magnetometer`].
+//!
+//! The way back, from the truth to what a sensor with faults would report, is [`measurement`] and
+//! [`simulation`].
 //!
 //! [`RawSample`]: crate::sensor::RawSample
 //! [`Sample`]: crate::sensor::Sample
+//! [`magnetometer`]: crate::sensor::magnetometer
+//! [`measurement`]: crate::sensor::measurement
+//! [`simulation`]: crate::sensor::simulation
 
 use crate::units::{AngularRate, METRES_PER_S2_PER_G, RADIANS_PER_DEGREE, SpecificForce};
-use nalgebra::{RealField, Vector3, convert};
+use nalgebra::{RealField, Vector3, convert, try_convert};
+
+pub mod magnetometer;
+
+pub mod measurement;
+
+pub mod simulation;
 
 /// INT_STATUS: the first register of the burst that makes up a sample.
 pub const BURST_START: u8 = 0x3A;
@@ -106,14 +119,21 @@ pub enum GyroRange {
 }
 
 impl GyroRange {
-    const fn rad_per_s_per_count(self) -> f64 {
-        let dps = match self {
+    /// Every range, narrowest first.
+    pub const ALL: [Self; 4] = [Self::Dps250, Self::Dps500, Self::Dps1000, Self::Dps2000];
+
+    /// The end of the range in °/s: max_range of eq. 5.
+    pub const fn max_dps(self) -> f64 {
+        match self {
             Self::Dps250 => 250.0,
             Self::Dps500 => 500.0,
             Self::Dps1000 => 1000.0,
             Self::Dps2000 => 2000.0,
-        };
-        dps * RADIANS_PER_DEGREE / COUNTS_PER_RANGE
+        }
+    }
+
+    const fn rad_per_s_per_count(self) -> f64 {
+        self.max_dps() * RADIANS_PER_DEGREE / COUNTS_PER_RANGE
     }
 }
 
@@ -131,14 +151,21 @@ pub enum AccelRange {
 }
 
 impl AccelRange {
-    const fn m_per_s2_per_count(self) -> f64 {
-        let g = match self {
+    /// Every range, narrowest first.
+    pub const ALL: [Self; 4] = [Self::G2, Self::G4, Self::G8, Self::G16];
+
+    /// The end of the range in g: max_range of eq. 5.
+    pub const fn max_g(self) -> f64 {
+        match self {
             Self::G2 => 2.0,
             Self::G4 => 4.0,
             Self::G8 => 8.0,
             Self::G16 => 16.0,
-        };
-        g * METRES_PER_S2_PER_G / COUNTS_PER_RANGE
+        }
+    }
+
+    const fn m_per_s2_per_count(self) -> f64 {
+        self.max_g() * METRES_PER_S2_PER_G / COUNTS_PER_RANGE
     }
 }
 
@@ -158,7 +185,21 @@ impl Ranges {
         self.scaled(vector(raw.gyro), vector(raw.accel))
     }
 
-    /// The same for counts that are no longer whole, such as the mean of many samples.
+    /// Eq. 5 the other way: the counts the sensor reports for these values, rounded to the nearest
+    /// and clipped at the ends of the range ([`RawSample::clipped`] then says so). What is not a
+    /// number becomes zero. The temperature is 21 °C, and the sample is fresh.
+    pub fn counts<T: RealField + Copy>(self, sample: &Sample<T>) -> RawSample {
+        let gyro = sample.rate.rad_per_s() / convert::<f64, T>(self.gyro.rad_per_s_per_count());
+        let accel = sample.force.m_per_s2() / convert::<f64, T>(self.accel.m_per_s2_per_count());
+        RawSample {
+            gyro: gyro.map(nearest_count).into(),
+            accel: accel.map(nearest_count).into(),
+            temperature: 0,
+            fresh: true,
+        }
+    }
+
+    /// Eq. 5 for counts that are no longer whole, such as the mean of many samples.
     pub(crate) fn scaled<T: RealField + Copy>(
         self,
         gyro_counts: Vector3<T>,
@@ -183,4 +224,10 @@ pub struct Sample<T> {
     pub rate: AngularRate<T>,
     /// Eq. 2: gravity's reaction plus acceleration plus noise.
     pub force: SpecificForce<T>,
+}
+
+/// The nearest whole count that 16 bits hold. Zero for what is not a number.
+fn nearest_count<T: RealField + Copy>(counts: T) -> i16 {
+    // A cast to an integer saturates, which is just what the converter does.
+    try_convert::<T, f64>(counts.round()).map_or(0, |counts| counts as i16)
 }

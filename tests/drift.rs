@@ -282,3 +282,18 @@ fn no_input_makes_anything_but_a_rotation() {
     survives::<f64>(1e-10);
     survives::<f32>(1e-6);
 }
+
+#[test]
+fn an_error_of_a_ten_thousandth_is_resolved_in_single_precision() {
+    for axis in [X, Y, [0.6, 0.0, 0.8], [0.6, 0.8, 0.0]] {
+        let truth = rotation(axis, -1e-4);
+        let d = axis_angle(error(
+            UnitQuaternion::<f32>::identity(),
+            force(felt(&truth, [0.0, G, 0.0])),
+            Some(field(felt(&truth, earth(60.0)))),
+        ));
+        assert!((d.angle.rad() - 1e-4).abs() < 1e-6, "{d:?}");
+        let off = (0..3).map(|i| (f64::from(d.axis[i]) - axis[i]).abs());
+        assert!(off.fold(0.0, f64::max) < 0.01, "{d:?}");
+    }
+}

@@ -174,6 +174,10 @@ impl Board {
         if exception == 0 {
             self.storm.entries = 0;
         }
+        if step.moved_stack && moment.next_stack < self.stack_limit {
+            // A stack among the variables, on purpose: nobody knows where it ends.
+            self.stack_limit = 0;
+        }
         if moment.next_stack < self.measure.stack_low && moment.next_stack >= RAM_BASE {
             self.lower_stack(moment.next_stack);
         }

@@ -35,6 +35,7 @@ use crate::peripherals::dmamux::DmaMux;
 use crate::peripherals::ftfl::{FlashController, Memory};
 use crate::peripherals::i2c::I2c;
 use crate::peripherals::mcg::ClockGenerator;
+use crate::peripherals::mcm::MiscellaneousControl;
 use crate::peripherals::pins::{self, Pins};
 use crate::peripherals::pit::IntervalTimer;
 use crate::peripherals::rcm::{Cause, ResetControl};
@@ -68,6 +69,7 @@ pub struct Chip {
     watchdog_resets: u16,
     clocks: ClockGenerator,
     sim: SystemIntegration,
+    arbitration: MiscellaneousControl,
     timer: IntervalTimer,
     /// When the clock generator's output may next change by itself.
     clock_change: Ticks,
@@ -118,6 +120,7 @@ impl Chip {
             watchdog_resets: 0,
             clocks,
             sim: SystemIntegration::new(),
+            arbitration: MiscellaneousControl::default(),
             timer: IntervalTimer::new(),
             clock_change: 0,
             reset_control: ResetControl::new(Cause::PowerOn),
@@ -161,6 +164,7 @@ impl Chip {
         self.pins.reset();
         self.i2c = I2c::new();
         self.usb.reset();
+        self.arbitration = MiscellaneousControl::default();
         self.timer = IntervalTimer::new();
         self.reset_control = ResetControl::new(cause);
         self.flash.reset();

@@ -86,6 +86,8 @@ pub struct Step {
     pub cycles: Cycles,
     /// The access to memory that the instruction made.
     pub access: Option<Access>,
+    /// Whether the program took another stack.
+    pub moved_stack: bool,
 }
 
 /// The processor with its memories.
@@ -179,6 +181,7 @@ impl Cpu {
             return Step {
                 cycles: Cycles::exactly(charged),
                 access: None,
+                moved_stack: false,
             };
         }
         if xpsr & IT_STATE != 0 {
@@ -208,7 +211,11 @@ impl Cpu {
         {
             self.fault = fault::of_access(access);
         }
-        Step { cycles, access }
+        Step {
+            cycles,
+            access,
+            moved_stack: op.moves_stack,
+        }
     }
 
     /// Takes the rule of the processor that the last step has broken.

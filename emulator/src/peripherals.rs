@@ -25,6 +25,8 @@ pub mod lptmr;
 
 pub mod mcg;
 
+pub mod mcm;
+
 pub mod pdb;
 
 pub mod pins;

@@ -104,6 +104,14 @@ fn there_are_many_and_their_names_are_their_own() {
 }
 
 #[test]
+fn a_stack_among_the_variables_on_purpose_is_not_stopped() {
+    let image = Image::open(&images().join("stack-moved")).expect("it is an image");
+    let mut board = Board::new(image, Setup::new(Box::new(Turns::new(1e6, 0.0))));
+    board.run(10 * MILLISECOND);
+    assert_eq!(board.stop(), None);
+}
+
+#[test]
 fn the_command_ends_with_code_3_and_explains() {
     let run = |more: &[&str]| {
         Command::new(env!("CARGO_BIN_EXE_emulate"))

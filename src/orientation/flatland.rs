@@ -6,6 +6,10 @@ use crate::calibration::Reading;
 use crate::units::{Angle, Seconds, SpecificForce};
 use nalgebra::RealField;
 
+pub mod error;
+
+pub mod response;
+
 /// Three estimates of the same angle, each from −180° to 180° so that they can be plotted on top
 /// of each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,10 +46,9 @@ impl<T: RealField + Copy> Flatland<T> {
         }
     }
 
-    /// Starts again from the accelerometer's angle: θ(0) of section 3.1. `force` is in the body
-    /// frame.
-    pub fn reset(&mut self, force: SpecificForce<T>) {
-        let start = from_accelerometer(force).unwrap_or(Angle::from_rad(T::zero()));
+    /// Starts again from a chosen angle: θ(0) of section 3.1. Zero if it is not finite.
+    pub fn start_at(&mut self, angle: Angle<T>) {
+        let start = wrapped_or(angle.rad(), Angle::from_rad(T::zero()));
         self.roll = Roll {
             gyro: start,
             accelerometer: start,
@@ -53,7 +56,13 @@ impl<T: RealField + Copy> Flatland<T> {
         };
     }
 
-    /// One sample.
+    /// Starts again from the accelerometer's angle, the other choice of section 3.1; from zero if
+    /// it shows none. `force` is in the body frame.
+    pub fn reset(&mut self, force: SpecificForce<T>) {
+        self.start_at(from_accelerometer(force).unwrap_or(Angle::from_rad(T::zero())));
+    }
+
+    /// One sample. What is not finite in it changes nothing.
     pub fn update(&mut self, reading: &Reading<T>) -> Roll<T> {
         let turned = reading.rate().rad_per_s().z * self.sample_period.0;
         // Eq. 7.
@@ -63,7 +72,10 @@ impl<T: RealField + Copy> Flatland<T> {
         let by_gyro = self.roll.fused.rad() + turned;
         let accelerometer = from_accelerometer(reading.force());
         let fused = match accelerometer {
-            Some(angle) => by_gyro + self.accelerometer_weight * wrapped(angle.rad() - by_gyro),
+            Some(angle) => {
+                let missing = shortest_turn(Angle::from_rad(by_gyro), angle);
+                by_gyro + self.accelerometer_weight * missing.rad()
+            }
             None => by_gyro,
         };
         self.roll = Roll {
@@ -80,11 +92,17 @@ impl<T: RealField + Copy> Flatland<T> {
     }
 }
 
-/// Eq. 8: atan2(a_x, a_y). None where the force has no direction in the plane.
-fn from_accelerometer<T: RealField + Copy>(force: SpecificForce<T>) -> Option<Angle<T>> {
+/// Eq. 8: atan2(a_x, a_y), from −180° to 180°. None where the force (body frame) has no direction
+/// in the plane, as in free fall.
+pub fn from_accelerometer<T: RealField + Copy>(force: SpecificForce<T>) -> Option<Angle<T>> {
     let a = force.m_per_s2();
     let directed = a.x.is_finite() && a.y.is_finite() && !(a.x.is_zero() && a.y.is_zero());
     directed.then(|| Angle::from_rad(a.x.atan2(a.y)))
+}
+
+/// The difference between two angles, the short way round: from −180° to 180°.
+pub fn shortest_turn<T: RealField + Copy>(from: Angle<T>, to: Angle<T>) -> Angle<T> {
+    Angle::from_rad(wrapped(to.rad() - from.rad()))
 }
 
 /// The same angle between −π and π.

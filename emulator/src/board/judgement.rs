@@ -32,7 +32,7 @@ pub(super) struct Storm {
 impl Board {
     /// Stops at the first offence that is not allowed; the others become events.
     pub(super) fn judge(&mut self, offences: Vec<Offence>) {
-        let place = self.place_of(self.pc);
+        let place = self.place();
         for Offence { trap, what } in offences {
             if self.allowed.contains(&trap) {
                 let what = format!("{trap}: {what}; at {place}");
@@ -107,6 +107,19 @@ impl Board {
                 what: fault.what,
             }]);
         }
+    }
+
+    /// Where the program is, for people; outside all symbols also where it came from, as far as the link register tells.
+    fn place(&self) -> String {
+        const CODE: std::ops::Range<u32> = 1..0x4000_0000;
+        let (place, link) = (self.place_of(self.pc), self.cpu.registers_before().0[14]);
+        if self.image.symbol_at(self.pc).is_some() || !CODE.contains(&link) {
+            return place;
+        }
+        format!(
+            "{place}; the link register holds {}",
+            self.place_of(link & !1)
+        )
     }
 
     /// An address for people.

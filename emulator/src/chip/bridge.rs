@@ -5,6 +5,9 @@ use super::slots::{SLOTS, Slot};
 use crate::journal::Happening;
 use crate::witness::Trap;
 
+/// The miscellaneous control module stands on the processor's private bus, beyond the bridges.
+const MCM: u32 = 0xE008_0000;
+
 impl Chip {
     fn find(&mut self, address: u32, width: u8, write: bool) -> Option<&'static Slot> {
         let page = address >> 12 & 0xFF;
@@ -47,6 +50,9 @@ impl Chip {
         if let Some(answer) = self.read_flash_module(address, width) {
             return answer;
         }
+        if address >= MCM {
+            return Some(self.arbitration.read(address - MCM, width));
+        }
         let slot = self.find(address, width, false)?;
         let (now, bus_hz, offset) = (self.now, self.bus_hz(), address & 0xFFF);
         Some(match slot.page {
@@ -72,6 +78,10 @@ impl Chip {
     pub fn write(&mut self, address: u32, width: u8, value: u32) -> bool {
         if let Some(answer) = self.write_flash_module(address, width, value) {
             return answer;
+        }
+        if address >= MCM {
+            self.arbitration.write(address - MCM, value);
+            return true;
         }
         let Some(slot) = self.find(address, width, true) else {
             return false;

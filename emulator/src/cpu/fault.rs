@@ -21,13 +21,6 @@ const NOCP: u32 = 1 << 19;
 const UNALIGNED: u32 = 1 << 24;
 const DIVBYZERO: u32 = 1 << 25;
 
-/// Where instructions can come from: flash, FlexRAM and SRAM.
-fn is_memory(address: u32) -> bool {
-    address < FLASH_SIZE
-        || (0x1400_0000..0x1400_0800).contains(&address)
-        || (RAM_BASE..0x2000_8000).contains(&address)
-}
-
 /// The engine takes unaligned accesses apart into bytes; these would not work on silicon.
 pub(super) fn of_access(access: Access) -> Option<Fault> {
     let Access { address, bytes, .. } = access;
@@ -92,10 +85,15 @@ pub(super) fn name(
             Trap::StackOutside,
             "an exception found no memory for its frame at the stack pointer".into(),
         )
-    } else if has(IACCVIOL | IBUSERR) && !is_memory(pc) {
+    } else if has(IACCVIOL | IBUSERR) && pc >= PERIPHERALS.start {
         (
             Trap::ExecuteNever,
             format!("an instruction was fetched from {pc:#010x}, where no code can be"),
+        )
+    } else if has(IBUSERR) {
+        (
+            Trap::UnmappedMemory,
+            format!("an instruction was fetched from {pc:#010x}, where no memory is"),
         )
     } else if has(PRECISERR) {
         let (verb, store) = match access {

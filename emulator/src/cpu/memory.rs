@@ -14,6 +14,9 @@ use super::{Cpu, FLASH_SIZE, RAM_BASE, RAM_SIZE};
 
 const PERIPHERALS_BASE: u32 = 0x4000_0000;
 const PERIPHERALS_SIZE: u32 = 0x0010_0000;
+/// The miscellaneous control module, on the private peripheral bus.
+const MCM_BASE: u32 = 0xE008_0000;
+const MCM_SIZE: u32 = 0x1000;
 const FLEXNVM_BASE: u32 = 0x1000_0000;
 const FLEXNVM_SIZE: u32 = 32 * 1024;
 const FLEXRAM_BASE: u32 = 0x1400_0000;
@@ -135,6 +138,7 @@ impl Map {
             place((RAM_BASE, Region::ram("sram", Arc::clone(&ram.0))));
             place(door("flexnvm", FLEXNVM_BASE, FLEXNVM_SIZE));
             place(door("flexram", FLEXRAM_BASE, FLEXRAM_SIZE));
+            place(door("mcm", MCM_BASE, MCM_SIZE));
             place(door("peripherals", PERIPHERALS_BASE, PERIPHERALS_SIZE));
             place((0, readable(flash)))
         };

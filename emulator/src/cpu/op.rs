@@ -59,6 +59,8 @@ pub struct Op {
     pub loads: u8,
     /// Whether it is a coprocessor instruction of the FPU that this chip does not have.
     pub floating: bool,
+    /// Whether it writes a stack pointer with MSR: another stack begins.
+    pub moves_stack: bool,
     place: Place,
     bytes: u8,
     store: bool,
@@ -73,6 +75,7 @@ impl Op {
         class: Class::Single,
         loads: NO_REGISTER,
         floating: false,
+        moves_stack: false,
         place: Place::Nowhere,
         bytes: 4,
         store: false,
@@ -199,6 +202,8 @@ impl Op {
             Insn::Hint {
                 op: HintOp::Wfi | HintOp::Wfe,
             } => op.class = Class::Sleep,
+            // SYSm 8 is MSP and 9 is PSP (ARMv7-M, B5.2.3).
+            Insn::Msr { sysm, .. } => op.moves_stack = sysm == 8 || sysm == 9,
             Insn::Coproc { cp } => op.floating = cp == 10 || cp == 11,
             _ => {}
         }

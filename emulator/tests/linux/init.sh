@@ -94,7 +94,8 @@ until_true gone && attach && read_lines 20 >/tmp/stream
 check "and unplugged and replugged while it streams" $?
 kill $reader 2>/dev/null
 
-dmesg | grep -E 'usb|vhci|acm' >/tmp/log
+# A plug that is pulled while the kernel sends a command leaves it with a broken pipe: that is the plug's doing.
+dmesg | grep -E 'usb|vhci|acm' | grep -v 'sendmsg failed!, ret=-32' >/tmp/log
 ! grep -iE 'error|fail|cannot|unable|timed out|timeout|bogus|invalid|not accepting|WARNING|stall|descriptor read' /tmp/log
 check "the kernel finds nothing to object to" $?
 

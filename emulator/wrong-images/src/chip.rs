@@ -241,6 +241,22 @@ mod assembly {
         unsafe { asm!("udiv {0}, {1}, {2}", out(reg) _, in(reg) dividend, in(reg) divisor) }
     }
 
+    /// Uses another main stack for a moment.
+    pub fn use_stack(stack: u32) {
+        // SAFETY: what is below `stack` is given away for it, and the old one comes back at the end.
+        unsafe {
+            asm!(
+                "mrs {0}, msp",
+                "msr msp, {1}",
+                "push {{r0-r3}}",
+                "pop {{r0-r3}}",
+                "msr msp, {0}",
+                out(reg) _,
+                in(reg) stack
+            )
+        }
+    }
+
     /// Moves the stack and takes an exception.
     pub fn svc_with_stack(stack: u32) {
         // SAFETY: none is promised; nothing can be pushed there.

@@ -68,6 +68,7 @@ fn main() -> ExitCode {
         Ok(None) => ExitCode::SUCCESS,
         Ok(Some(stop)) => {
             say!("\n{stop}");
+            say!("go on   --allow {} passes it, as silicon would", stop.trap);
             ExitCode::from(TRAPPED)
         }
         Err(error) => {

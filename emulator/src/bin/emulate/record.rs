@@ -22,7 +22,7 @@ use vrduino_emulator::board::Board;
 use vrduino_emulator::hash::Fnv1a;
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::Motion;
-use vrduino_emulator::time::Ticks;
+use vrduino_emulator::time::{self, Ticks};
 
 use super::Error;
 use super::input::Input;
@@ -80,6 +80,19 @@ pub struct Ending {
     state: u64,
     bytes: u64,
     stream: u64,
+}
+
+impl std::fmt::Display for Ending {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "end at {:.9} s, state {:016x}, {} bytes of stream with hash {:016x}",
+            time::seconds(self.at),
+            self.state,
+            self.bytes,
+            self.stream
+        )
+    }
 }
 
 /// The stream so far.
@@ -279,7 +292,7 @@ impl Replay {
             return Ok(());
         }
         Err(format!(
-            "the replay went another way than {}:\nrecorded {:?}\nreplayed {ending:?}",
+            "the replay went another way than {}:\nrecorded  {}\nreplayed  {ending}",
             self.path.display(),
             self.ending
         )

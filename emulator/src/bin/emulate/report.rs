@@ -98,25 +98,30 @@ impl Report {
                     time::seconds(first)
                 );
             }
-            None => say!("lines   {}, none of them QC", self.lines),
+            None => say!("lines   {}", self.lines),
         }
         // Before the image has started, the counter's memory holds anything.
         match board.variable("vrduino_dropped_lines") {
             Some(count) if self.lines > 0 => {
                 say!("dropped {count} lines, for want of a reader")
             }
-            Some(_) => {}
-            None => say!("dropped unknown: the image has no counter that the emulator knows"),
+            // Another image than the tracker's has no such counter.
+            _ => {}
         }
         say!("resets  {}", board.resets());
         let measure = board.measure();
         let busy = |awake: u64| 100.0 * awake as f64 / board.now().max(1) as f64;
-        say!(
-            "cpu     {:.1} to {:.1} % busy, {:.1} million instructions a second",
-            busy(measure.awake.least),
-            busy(measure.awake.greatest),
-            board.instructions() as f64 / emulated.max(1e-9) / 1e6
-        );
+        let load = (busy(measure.awake.least), busy(measure.awake.greatest));
+        let rate = board.instructions() as f64 / emulated.max(1e-9) / 1e6;
+        if load.0 > 99.9 {
+            say!("cpu     never sleeps, {rate:.1} million instructions a second");
+        } else {
+            say!(
+                "cpu     {:.1} to {:.1} % busy, {rate:.1} million instructions a second",
+                load.0,
+                load.1
+            );
+        }
         let stack = board.image().stack.saturating_sub(measure.stack_low);
         say!("stack   {stack} bytes at its deepest");
         for (number, latency) in INTERRUPTS.iter().zip(&measure.latencies) {

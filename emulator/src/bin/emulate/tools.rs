@@ -93,6 +93,14 @@ impl Tools {
     /// Lets everything that is wanted watch the board.
     pub fn watch(&self, board: &mut Board) -> Result<(), Error> {
         if !self.trace.is_empty() {
+            if self
+                .trace_until
+                .is_some_and(|until| until <= self.trace_from)
+            {
+                return Err(
+                    "the trace has to end after it begins: give --trace-until a later time".into(),
+                );
+            }
             let topics: Vec<Topic> = if self.trace.iter().any(|traced| traced.0.is_none()) {
                 Topic::ALL.to_vec()
             } else {

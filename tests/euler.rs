@@ -1,0 +1,423 @@
+//! Orientation in three angles (course notes, eq. 10; both lectures), and why nobody tracks with
+//! them (2016 lecture).
+
+use nalgebra::{Matrix4, Point3, Quaternion, RealField, UnitQuaternion, Vector3, convert};
+use std::f64::consts::{FRAC_PI_2, PI};
+use vrduino::calibration::{GyroBias, Reading};
+use vrduino::orientation::TimeConstant;
+use vrduino::orientation::complementary::Complementary;
+use vrduino::orientation::euler::lecture::{LectureComplementary, LectureDeadReckoning};
+use vrduino::orientation::euler::{EulerAngles, to_clip_space};
+use vrduino::orientation::gyro::DeadReckoning;
+use vrduino::sensor::Sample;
+use vrduino::units::{Angle, AngularRate, Seconds, SpecificForce};
+
+const G: f64 = 9.81;
+
+#[path = "euler/reference.rs"]
+mod reference;
+
+use reference::{Matrix, degrees_between};
+
+/// Reproducible random numbers (xorshift64*).
+struct Random(u64);
+
+impl Random {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        let bits = self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11;
+        low + (high - low) * (bits as f64 / (1_u64 << 53) as f64)
+    }
+}
+
+fn angles<T: RealField + Copy>(yaw: f64, pitch: f64, roll: f64) -> EulerAngles<T> {
+    let angle = |rad: f64| Angle::from_rad(convert(rad));
+    EulerAngles {
+        yaw: angle(yaw),
+        pitch: angle(pitch),
+        roll: angle(roll),
+    }
+}
+
+fn degrees(yaw: f64, pitch: f64, roll: f64) -> EulerAngles<f64> {
+    angles(yaw.to_radians(), pitch.to_radians(), roll.to_radians())
+}
+
+fn radians<T: RealField + Copy>(a: EulerAngles<T>) -> [f64; 3] {
+    let as_f64 = |a: Angle<T>| nalgebra::try_convert::<T, f64>(a.rad()).expect("a real number");
+    [a.yaw, a.pitch, a.roll].map(as_f64)
+}
+
+/// Body to world, by eq. 10.
+fn matrix<T: RealField + Copy>(a: EulerAngles<T>) -> Matrix {
+    let [yaw, pitch, roll] = radians(a);
+    reference::transpose(&reference::eq_10(yaw, pitch, roll))
+}
+
+fn columns(q: UnitQuaternion<f64>) -> Matrix {
+    let m = q.to_rotation_matrix();
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| m[(i, j)]))
+}
+
+/// What perfect sensors read on a body with this orientation (body to world) and rate (body).
+fn reading(truth: &Matrix, rate: [f64; 3]) -> Reading<f64> {
+    let force = reference::apply(&reference::transpose(truth), [0.0, G, 0.0]);
+    GyroBias::zero().correct(Sample {
+        rate: AngularRate::from_rad_per_s(Vector3::from(rate)),
+        force: SpecificForce::from_m_per_s2(Vector3::from(force)),
+    })
+}
+
+fn conversions<T: RealField + Copy>(tolerance: f64) {
+    let mut random = Random(1);
+    for i in 0..100_000 {
+        let (yaw, roll) = (random.between(-PI, PI), random.between(-PI, PI));
+        // Every third one is close to gimbal lock, at every distance from it.
+        let pitch = match i % 3 {
+            0 => FRAC_PI_2 - 10.0_f64.powf(random.between(-18.0, 0.0)),
+            1 => 10.0_f64.powf(random.between(-18.0, 0.0)) - FRAC_PI_2,
+            _ => random.between(-FRAC_PI_2, FRAC_PI_2),
+        };
+        let these = angles::<T>(yaw, pitch, roll);
+        let expected = reference::eq_10(yaw, pitch, roll);
+        let r = these.world_to_body();
+        for (row, elements) in expected.iter().enumerate() {
+            for (column, element) in elements.iter().enumerate() {
+                let difference = r[(row, column)] - convert(*element);
+                assert!(difference.abs() < convert(tolerance), "{these:?}");
+            }
+        }
+        let q = these.orientation();
+        let product = r * q.to_rotation_matrix();
+        assert!((product.matrix() - nalgebra::Matrix3::identity()).amax() < convert(tolerance));
+        // Back to angles: the same orientation, and away from gimbal lock the same angles.
+        let found = EulerAngles::of(q);
+        let again = found.world_to_body();
+        assert!(
+            (again.matrix() - r.matrix()).amax() < convert(tolerance),
+            "{these:?}"
+        );
+        if i % 3 == 2 {
+            for (is, expected) in radians(found).into_iter().zip([yaw, pitch, roll]) {
+                let seam = (is - expected).abs() > PI;
+                let limit = 2.0 * tolerance / pitch.cos();
+                assert!(seam || (is - expected).abs() < limit, "{these:?} {found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn angles_are_the_matrices_of_eq_10_and_come_back_from_quaternions() {
+    conversions::<f64>(1e-9);
+}
+
+#[test]
+fn angles_are_the_matrices_of_eq_10_in_single_precision() {
+    conversions::<f32>(1e-5);
+}
+
+#[test]
+fn at_gimbal_lock_yaw_has_the_turn_and_roll_is_zero() {
+    for (pitch, yaw) in [(90.0, 20.0 - 50.0), (-90.0, 20.0 + 50.0)] {
+        let found = EulerAngles::of(degrees(20.0, pitch, 50.0).orientation());
+        assert_eq!(found.roll.rad(), 0.0);
+        assert!((found.yaw.degrees() - yaw).abs() < 1e-9, "{found:?}");
+        assert!((found.pitch.degrees() - pitch).abs() < 1e-9);
+    }
+    let nothing = UnitQuaternion::new_unchecked(Quaternion::new(f64::NAN, 0.0, 0.0, 0.0));
+    assert_eq!(EulerAngles::of(nothing), EulerAngles::zero());
+    let nothing = UnitQuaternion::new_unchecked(Quaternion::new(0.0_f64, 0.0, 0.0, 0.0));
+    assert_eq!(EulerAngles::of(nothing), EulerAngles::zero());
+}
+
+#[test]
+fn the_rates_of_the_angles_integrate_to_the_turn_of_the_body() {
+    // Runge and Kutta on the rates against the matrix exponential.
+    let rate = [0.5, -0.4, 0.7];
+    let step = 0.001;
+    let slope = |[yaw, pitch, roll]: [f64; 3]| {
+        let rate = AngularRate::from_rad_per_s(Vector3::from(rate));
+        let rates = angles::<f64>(yaw, pitch, roll)
+            .rates(rate)
+            .expect("no lock");
+        [
+            rates.yaw_rad_per_s,
+            rates.pitch_rad_per_s,
+            rates.roll_rad_per_s,
+        ]
+    };
+    let along = |a: [f64; 3], b: [f64; 3], t: f64| [0, 1, 2].map(|i| a[i] + t * b[i]);
+    let mut state = [0.3, -0.4, 1.1];
+    let start = matrix(angles::<f64>(0.3, -0.4, 1.1));
+    for _ in 0..1000 {
+        let k1 = slope(state);
+        let k2 = slope(along(state, k1, step / 2.0));
+        let k3 = slope(along(state, k2, step / 2.0));
+        let k4 = slope(along(state, k3, step));
+        state =
+            [0, 1, 2].map(|i| state[i] + step / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
+    }
+    let expected = reference::product(&start, &reference::turn(rate, 1.0));
+    let found = matrix(angles::<f64>(state[0], state[1], state[2]));
+    assert!(degrees_between(&found, &expected).to_radians() < 1e-9);
+    let any = AngularRate::from_rad_per_s(Vector3::new(1.0, 1.0, 1.0));
+    assert_eq!(degrees(10.0, 90.0, 20.0).rates(any), None);
+    assert_eq!(degrees(10.0, -90.0, 20.0).rates(any), None);
+}
+
+/// Where the lecture's dead reckoning and that of the notes end, in degrees from the truth.
+fn reckoned(start: EulerAngles<f64>, rate_dps: [f64; 3], seconds: f64) -> (f64, f64) {
+    let (rate, dt) = (rate_dps.map(f64::to_radians), 0.001);
+    let mut lecture = LectureDeadReckoning::new(Seconds(dt));
+    lecture.set(start);
+    let mut notes = DeadReckoning::new(Seconds(dt));
+    notes.set(start.orientation());
+    for _ in 0..(seconds / dt).round() as u32 {
+        let reading = reading(&matrix(start), rate);
+        lecture.update(&reading);
+        notes.update(&reading);
+    }
+    let truth = reference::product(&matrix(start), &reference::turn(rate, seconds));
+    (
+        degrees_between(&matrix(lecture.angles()), &truth),
+        degrees_between(&columns(notes.orientation()), &truth),
+    )
+}
+
+#[test]
+fn the_lectures_dead_reckoning_is_right_for_one_axis_and_wrong_for_two() {
+    // One axis at a time, from level: all is well.
+    for axis in 0..3 {
+        let mut rate = [0.0; 3];
+        rate[axis] = 70.0;
+        let (lecture, notes) = reckoned(EulerAngles::zero(), rate, 1.0);
+        assert!(lecture < 1e-9 && notes < 1e-9);
+    }
+    // Rolled by 90°, ω_x is yaw: 120° off after a quarter turn. Rolled by 10°: 3.5° after 20°.
+    for (roll, dps, off) in [(90.0, 90.0, 120.0), (10.0, 20.0, 3.5)] {
+        let (lecture, notes) = reckoned(degrees(0.0, 0.0, roll), [dps, 0.0, 0.0], 1.0);
+        assert!((lecture - off).abs() < 0.05, "{lecture}");
+        assert!(notes < 1e-9, "{notes}");
+    }
+    // And the truth of the first is a yaw of 90°.
+    let turned = reference::product(
+        &matrix(degrees(0.0, 0.0, 90.0)),
+        &reference::turn([FRAC_PI_2, 0.0, 0.0], 1.0),
+    );
+    assert!(degrees_between(&turned, &matrix(degrees(90.0, 0.0, 90.0))) < 1e-9);
+}
+
+/// Largest error in degrees of the lecture's filter and of the notes', fed by perfect sensors.
+fn filtered(start: EulerAngles<f64>, seconds: f64, rate: impl Fn(f64) -> [f64; 3]) -> (f64, f64) {
+    let dt = 0.001;
+    let time_constant = TimeConstant::new(Seconds(0.5));
+    let mut lecture = LectureComplementary::new(time_constant, Seconds(dt));
+    lecture.set(start);
+    let mut notes = Complementary::new(time_constant, Seconds(dt));
+    notes.set(start.orientation());
+    let mut truth = matrix(start);
+    let mut worst = (0.0_f64, 0.0_f64);
+    for k in 0..(seconds / dt).round() as u32 {
+        let rate = rate((f64::from(k) + 0.5) * dt);
+        truth = reference::product(&truth, &reference::turn(rate, dt));
+        let reading = reading(&truth, rate);
+        let found = matrix(lecture.update(&reading));
+        worst.0 = worst.0.max(degrees_between(&found, &truth));
+        let found = columns(notes.update(&reading));
+        worst.1 = worst.1.max(degrees_between(&found, &truth));
+    }
+    worst
+}
+
+#[test]
+fn the_lectures_filter_fails_when_axes_turn_together_and_the_quaternion_filter_does_not() {
+    // A rolled head shakes: far from gimbal lock, and the accelerometer corrects pitch and roll.
+    let shake = |t: f64| [0.0, 2.0 * (3.0 * t).sin(), 0.0];
+    let (lecture, notes) = filtered(degrees(0.0, 0.0, 30.0), 10.0, shake);
+    assert!(lecture > 18.0, "{lecture}");
+    assert!(notes < 1e-6, "{notes}");
+    // Nodding and tilting a quarter of a period apart, as one does when listening to music: yaw,
+    // which nothing corrects, walks away.
+    let nod = |t: f64| [2.0 * (4.0 * t).sin(), 0.0, 2.0 * (4.0 * t).cos()];
+    let (lecture, notes) = filtered(EulerAngles::zero(), 20.0, nod);
+    assert!(lecture > 170.0, "{lecture}");
+    assert!(notes < 1e-6, "{notes}");
+}
+
+#[test]
+fn the_lectures_filter_fails_at_gimbal_lock_and_the_quaternion_filter_does_not() {
+    // Looking up and over: pitch passes 90° at 60 °/s, nothing else turns.
+    let up = |_: f64| [60.0_f64.to_radians(), 0.0, 0.0];
+    let (lecture, notes) = filtered(EulerAngles::zero(), 3.0, up);
+    assert!(lecture > 170.0, "{lecture}");
+    assert!(notes < 1e-6, "{notes}");
+    // Up to 80° only, the same filter is right.
+    let (lecture, _) = filtered(EulerAngles::zero(), 80.0 / 60.0, up);
+    assert!(lecture < 1e-6, "{lecture}");
+}
+
+/// The slide as printed: degrees, no wrapping, eq. 11 with the sign beside eq. 12.
+fn printed([pitch, roll]: [f64; 2], dps: [f64; 3], a: [f64; 3], alpha: f64, dt: f64) -> [f64; 2] {
+    let [x, y, z] = a;
+    let by_accelerometer = [
+        -z.atan2(y.signum() * (x * x + y * y).sqrt()).to_degrees(),
+        -(-x).atan2(y).to_degrees(),
+    ];
+    [
+        alpha * (pitch + dps[0] * dt) + (1.0 - alpha) * by_accelerometer[0],
+        alpha * (roll + dps[2] * dt) + (1.0 - alpha) * by_accelerometer[1],
+    ]
+}
+
+#[test]
+fn the_lectures_filter_is_that_of_the_slide_where_the_slide_is_consistent() {
+    let (alpha, dt) = (0.9, 0.01);
+    let weight = TimeConstant::from_gyro_weight(alpha, Seconds(dt));
+    let mut library = LectureComplementary::new(weight, Seconds(dt));
+    let mut slide = [0.0; 2];
+    let mut yaw = 0.0;
+    for k in 0..2000 {
+        let t = f64::from(k) * dt;
+        // A board that stays upright: a_y > 0.
+        let board = degrees(3.0 * t, 40.0 * t.sin(), 50.0 * (0.7 * t).cos());
+        let dps = [30.0 * t.cos(), 20.0 * t.sin(), -25.0 * t.sin()];
+        let reading = reading(&matrix(board), dps.map(f64::to_radians));
+        let found = library.update(&reading);
+        let force = reading.force().m_per_s2();
+        slide = printed(slide, dps, force.into(), alpha, dt);
+        yaw += dps[1] * dt;
+        assert!((found.pitch.degrees() - slide[0]).abs() < 1e-9);
+        assert!((found.roll.degrees() - slide[1]).abs() < 1e-9);
+        assert!((found.yaw.degrees() - yaw).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn the_slide_as_printed_settles_on_another_board_and_the_library_does_not() {
+    // At rest at pitch 10° and roll 170° (a_y < 0), from a start at zero.
+    let board = matrix(degrees(0.0, 10.0, 170.0));
+    let reading = reading(&board, [0.0; 3]);
+    let weight = TimeConstant::from_gyro_weight(0.9, Seconds(0.01));
+    let mut library = LectureComplementary::new(weight, Seconds(0.01));
+    let mut slide = [0.0; 2];
+    for _ in 0..1000 {
+        library.update(&reading);
+        let force = reading.force().m_per_s2();
+        slide = printed(slide, [0.0; 3], force.into(), 0.9, 0.01);
+    }
+    assert!((slide[0] - 170.0).abs() < 1e-9 && (slide[1] - 170.0).abs() < 1e-9);
+    assert!(degrees_between(&matrix(library.angles()), &board) < 1e-9);
+    assert!(degrees_between(&matrix(degrees(0.0, slide[0], slide[1])), &board) > 150.0);
+    // And across the seam: from 179°, shown −179°.
+    library.set(degrees(0.0, 0.0, 179.0));
+    let across = self::reading(&matrix(degrees(0.0, 0.0, -179.0)), [0.0; 3]);
+    assert!((library.update(&across).roll.degrees() - 179.2).abs() < 1e-9);
+    let force = across.force().m_per_s2();
+    let slide = printed([0.0, 179.0], [0.0; 3], force.into(), 0.9, 0.01);
+    assert!((slide[1] - 143.2).abs() < 1e-9);
+}
+
+#[test]
+fn half_way_in_angles_is_not_half_way_between_two_keyframes() {
+    // Both lectures: interpolating Euler angles is problematic. Pitch 80° and “pitch 100°”, 20° apart.
+    let (first, last) = (degrees(0.0, 80.0, 0.0), degrees(180.0, 80.0, 180.0));
+    assert!((degrees_between(&matrix(first), &matrix(last)) - 20.0).abs() < 1e-9);
+    // The mean of the angles is 14° from either instead of 10°.
+    let half_way = matrix(degrees(90.0, 80.0, 90.0));
+    for end in [first, last] {
+        assert!((degrees_between(&matrix(end), &half_way) - 14.133).abs() < 1e-3);
+    }
+    let short = columns(first.orientation().slerp(&last.orientation(), 0.5));
+    assert!((degrees_between(&matrix(first), &short) - 10.0).abs() < 1e-9);
+    assert!((degrees_between(&matrix(last), &short) - 10.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_view_matrix_puts_the_eye_at_the_origin_and_its_gaze_along_minus_z() {
+    let mut random = Random(2);
+    for _ in 0..10_000 {
+        let [yaw, pitch, roll] = [(); 3].map(|()| random.between(-PI, PI));
+        let eye = [(); 3].map(|()| random.between(-5.0, 5.0));
+        let view = angles::<f64>(yaw, pitch, roll).view_matrix(Point3::from(eye));
+        // R T(−eye), element by element: R p − R eye.
+        let r = reference::eq_10(yaw, pitch, roll);
+        let p = [(); 3].map(|()| random.between(-5.0, 5.0));
+        let expected = reference::apply(&r, [0, 1, 2].map(|i| p[i] - eye[i]));
+        let seen = view.transform_point(&Point3::from(p));
+        assert!((seen.coords - Vector3::from(expected)).amax() < 1e-12);
+        assert!(view.transform_point(&Point3::from(eye)).coords.amax() < 1e-12);
+        let gaze = reference::apply(&reference::transpose(&r), [0.0, 0.0, -2.0]);
+        let ahead = Point3::from([0, 1, 2].map(|i| eye[i] + gaze[i]));
+        let ahead = view.transform_point(&ahead).coords;
+        assert!((ahead - Vector3::new(0.0, 0.0, -2.0)).amax() < 1e-12);
+    }
+}
+
+#[test]
+fn a_vertex_goes_through_model_view_and_projection_in_this_order() {
+    // A camera at (0, 0, 5) turned left by 90° looks along −x; the model is moved to (−10, 1, 5).
+    let view = degrees(90.0, 0.0, 0.0).view_matrix(Point3::new(0.0, 0.0, 5.0));
+    let model = Matrix4::new_translation(&Vector3::new(-10.0, 1.0, 5.0));
+    // OpenGL's perspective, 90° high, aspect 2, planes at 1 and 101.
+    let (near, far) = (1.0, 101.0);
+    let projection = Matrix4::new(
+        0.5,
+        0.0,
+        0.0,
+        0.0, //
+        0.0,
+        1.0,
+        0.0,
+        0.0, //
+        0.0,
+        0.0,
+        -(far + near) / (far - near),
+        -2.0 * far * near / (far - near), //
+        0.0,
+        0.0,
+        -1.0,
+        0.0,
+    );
+    // 2 to the south of the model (+z), which is to the left of a camera that looks west.
+    let clip = to_clip_space(&projection, &view, &model, Point3::new(0.0, 0.0, 2.0));
+    let depth = 10.0 * 102.0 / 100.0 - 202.0 / 100.0;
+    let expected = nalgebra::Vector4::new(-1.0, 1.0, depth, 10.0);
+    assert!((clip - expected).amax() < 1e-12, "{clip}");
+}
+
+#[test]
+fn no_input_makes_the_lectures_trackers_anything_but_angles() {
+    let odd = [
+        0.0,
+        1e-40,
+        -1.0,
+        1e30,
+        f64::MAX,
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+    ];
+    for dt in odd {
+        for tau in odd {
+            let time_constant = TimeConstant::new(Seconds(tau));
+            let mut filter = LectureComplementary::new(time_constant, Seconds(dt));
+            let mut gyro = LectureDeadReckoning::new(Seconds(dt));
+            filter.set(angles(tau, dt, 1.0));
+            gyro.set(angles(1.0, tau, dt));
+            for a in odd {
+                for b in odd {
+                    let reading = GyroBias::zero().correct(Sample {
+                        rate: AngularRate::from_rad_per_s(Vector3::new(a, b, 1.0)),
+                        force: SpecificForce::from_m_per_s2(Vector3::new(b, 1.0, a)),
+                    });
+                    for angles in [filter.update(&reading), gyro.update(&reading)] {
+                        assert!(radians(angles).iter().all(|a| a.abs() <= PI + 1e-9));
+                    }
+                }
+            }
+        }
+    }
+}
