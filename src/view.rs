@@ -8,7 +8,7 @@
 //!
 //! | file | notes |
 //! |---|---|
-//! | `axis_angle` | algorithm 1: the arguments of `glRotatef`, in degrees |
+//! | `gl_rotate` | algorithm 1: `glRotatef` |
 //! | `inverse` | section 5.4.2: three ways to R⁻¹ |
 //! | `mounting` | section 5.4.2: the board turned round on the headset |
 //! | `eyes` | algorithm 2: the look-at of each eye |
@@ -26,10 +26,11 @@
 //! the head turns between them, and algorithm 3 puts the pivot in front of the face: see [`eyes`](crate::view::eyes)
 //! and [`head_neck`](crate::view::head_neck). The printed forms are run in `tests/view.rs`.
 
+use crate::orientation::quaternion;
 use core::fmt;
 use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3};
 
-pub mod axis_angle;
+pub mod gl_rotate;
 
 pub mod inverse;
 
@@ -90,13 +91,7 @@ impl core::error::Error for ViewError {}
 pub fn from_stream<T: RealField + Copy>(
     [w, x, y, z]: [T; 4],
 ) -> Result<UnitQuaternion<T>, ViewError> {
-    let q = Quaternion::new(w, x, y, z);
-    // The largest component becomes ±1, so that the squares neither overflow nor all vanish.
-    let largest = q.coords.amax();
-    if largest.is_zero() || !q.coords.iter().all(|component| component.is_finite()) {
-        return Err(ViewError::NotARotation);
-    }
-    Ok(UnitQuaternion::new_normalize(q / largest))
+    quaternion::unit(Quaternion::new(w, x, y, z)).ok_or(ViewError::NotARotation)
 }
 
 /// The same for one that claims to be of unit length already, which `new_unchecked` lets anyone.
@@ -106,7 +101,5 @@ fn unit<T: RealField + Copy>(q: UnitQuaternion<T>) -> Result<UnitQuaternion<T>, 
 
 /// The direction of a vector of any finite length but zero.
 fn direction<T: RealField + Copy>(v: Vector3<T>) -> Option<Vector3<T>> {
-    let largest = v.amax();
-    let directed = !largest.is_zero() && v.iter().all(|component| component.is_finite());
-    directed.then(|| (v / largest).normalize())
+    quaternion::unit(Quaternion::from_imag(v)).map(|unit| unit.imag())
 }

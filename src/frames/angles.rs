@@ -1,41 +1,19 @@
 //! Yaw, pitch and roll by their two definitions, and an angle by its two ranges.
+//!
+//! The gyroscope-emulation paper's angles (section 3.1) are about z, down, then the new y, to the
+//! right, then the new x, ahead; the course notes' (section 4) about y, up, then the new x, to the
+//! right, then the new z, backwards.
 
+use crate::orientation::euler::EulerAngles;
 use crate::units::Angle;
+use crate::virtual_gyro::angles::TaitBryan;
 use nalgebra::RealField;
-
-/// The angles of the gyroscope-emulation paper (section 3.1), in [`NorthEastDown`]: yaw about
-/// z, then pitch about the new y, then roll about the new x.
-///
-/// [`NorthEastDown`]: super::axes::Axes::NorthEastDown
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TaitBryan<T> {
-    /// φ, about x, ahead: the right side down.
-    pub roll: Angle<T>,
-    /// θ, about y, to the right: the nose up.
-    pub pitch: Angle<T>,
-    /// ψ, about z, down: to the right.
-    pub yaw: Angle<T>,
-}
-
-/// The angles of the course notes (section 4, eq. 10), in [`YUp`]: yaw about y, then pitch about
-/// the new x, then roll about the new z.
-///
-/// [`YUp`]: super::axes::Axes::YUp
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct YawPitchRoll<T> {
-    /// θ_y, about y, up: to the left.
-    pub yaw: Angle<T>,
-    /// θ_x, about x, to the right: the nose up.
-    pub pitch: Angle<T>,
-    /// θ_z, about z, backwards: the left side down.
-    pub roll: Angle<T>,
-}
 
 impl<T: RealField + Copy> TaitBryan<T> {
     /// The same orientation in the notes' angles. The order is the same, and so is the axis of
     /// pitch; those of yaw and roll are opposite.
-    pub fn to_notes(self) -> YawPitchRoll<T> {
-        YawPitchRoll {
+    pub fn to_notes(self) -> EulerAngles<T> {
+        EulerAngles {
             yaw: negated(self.yaw),
             pitch: self.pitch,
             roll: negated(self.roll),
@@ -43,7 +21,7 @@ impl<T: RealField + Copy> TaitBryan<T> {
     }
 }
 
-impl<T: RealField + Copy> YawPitchRoll<T> {
+impl<T: RealField + Copy> EulerAngles<T> {
     /// The same orientation in the paper's angles.
     pub fn to_paper(self) -> TaitBryan<T> {
         TaitBryan {

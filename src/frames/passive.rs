@@ -5,28 +5,21 @@
 //! The paper's table 2 has both: it makes of the passive M the quaternion device to reference, an
 //! active one. So it is the notes' eq. 34 applied to the transpose of M.
 
-use nalgebra::{Matrix3, RealField, Rotation3, UnitQuaternion, convert};
+use crate::orientation::quaternion::{NotARotation, from_matrix};
+use nalgebra::{Matrix3, RealField, UnitQuaternion};
 
 /// The paper's R or M, reference to device, of an orientation, body to world, in the same axes.
 pub fn matrix<T: RealField + Copy>(q: UnitQuaternion<T>) -> Matrix3<T> {
     q.conjugate().to_rotation_matrix().into_inner()
 }
 
-/// The orientation, body to world, of the paper's R or M. Of the two quaternions for it, either.
+/// The orientation, body to world, of the paper's R or M.
 ///
-/// None if it is not a rotation: an element of MᵀM is more than 1e-3 off, it mirrors, or is not
-/// finite.
+/// # Errors
+///
+/// See [`from_matrix`]: what is not a rotation is not turned into one.
 pub fn orientation<T: RealField + Copy>(
     reference_to_device: Matrix3<T>,
-) -> Option<UnitQuaternion<T>> {
-    let m = reference_to_device;
-    let off = (m.tr_mul(&m) - Matrix3::identity()).abs();
-    // Written so that what is not a number fails.
-    let orthonormal = off.iter().all(|element| *element < convert(1e-3));
-    if !(orthonormal && m.determinant() > T::zero()) {
-        return None;
-    }
-    let active = Rotation3::from_matrix_unchecked(m.transpose());
-    let q = UnitQuaternion::from_rotation_matrix(&active);
-    Some(UnitQuaternion::new_normalize(q.into_inner()))
+) -> Result<UnitQuaternion<T>, NotARotation> {
+    from_matrix(&reference_to_device.transpose())
 }

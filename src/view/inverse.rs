@@ -3,8 +3,10 @@
 //! these is R⁻¹, world to body, the view matrix of lecture 004. All fail alike, with
 //! [`ViewError::NotARotation`], if the quaternion is zero or not finite.
 
-use super::axis_angle::AxisAngle;
+use super::gl_rotate::gl_rotate;
 use super::{ViewError, unit};
+use crate::orientation::quaternion::axis_angle;
+use crate::units::Angle;
 use nalgebra::{Matrix4, RealField, UnitQuaternion};
 
 /// By flipping the sign of the angle: the notes' `glRotatef(-angle, axisX, axisY, axisZ)`.
@@ -15,7 +17,8 @@ use nalgebra::{Matrix4, RealField, UnitQuaternion};
 pub fn by_flipped_angle<T: RealField + Copy>(
     q: UnitQuaternion<T>,
 ) -> Result<Matrix4<T>, ViewError> {
-    Ok(AxisAngle::from_quaternion(q)?.inverse().matrix())
+    let turn = axis_angle(unit(q)?);
+    gl_rotate(Angle::from_rad(-turn.angle.rad()), turn.axis.into_inner())
 }
 
 /// By the conjugate (eq. 28), which is the inverse (eq. 29) of a quaternion of unit length; then
