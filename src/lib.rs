@@ -14,7 +14,10 @@
 //!
 //! The mathematics is that of the *course notes*: Gordon Wetzstein, “3-DOF Orientation Tracking
 //! with IMUs”. Every formula names its equation number; where the notes are followed in spirit
-//! but not to the letter, the comment says what differs and why.
+//! but not to the letter, the comment says what differs and why. Two lectures, a post and a paper
+//! stand beside the notes; `docs/equations.md` says where each of their equations lives,
+//! `docs/errata.md` what is wrong in print, and `docs/conventions.md` how they differ. The paper's
+//! own conventions (north-east-down, scalar last) stay inside [`virtual_gyro`]; [`frames`] leads out.
 //!
 //! # Conventions
 //!
