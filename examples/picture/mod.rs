@@ -1,0 +1,120 @@
+//! Lines over an axis, as an SVG file: all that the examples draw.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::{fs, io};
+
+/// A line with its name.
+pub struct Line {
+    /// As the legend has it.
+    pub name: &'static str,
+    /// Its points; a point that is not finite interrupts the line.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A chart.
+pub struct Picture {
+    /// Above it.
+    pub title: &'static str,
+    /// Quantity and unit of the axis to the right.
+    pub x: &'static str,
+    /// Quantity and unit of the axis upwards.
+    pub y: &'static str,
+    /// What it shows.
+    pub lines: Vec<Line>,
+}
+
+const WIDTH: f64 = 760.0;
+const HEIGHT: f64 = 420.0;
+const LEFT: f64 = 70.0;
+const TOP: f64 = 50.0;
+const COLOURS: [&str; 6] = [
+    "#1f6fb4", "#d1495b", "#2e8b57", "#e0a030", "#7b5ea7", "#555555",
+];
+
+impl Picture {
+    /// Writes it to `target/pictures/NAME.svg` and returns where that is.
+    ///
+    /// # Errors
+    ///
+    /// What the file system says.
+    pub fn save(&self, name: &str) -> io::Result<PathBuf> {
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/pictures");
+        fs::create_dir_all(&folder)?;
+        let path = folder.join(format!("{name}.svg"));
+        fs::write(&path, self.svg())?;
+        Ok(path)
+    }
+
+    fn svg(&self) -> String {
+        let range = |axis: usize| {
+            let values = self.lines.iter().flat_map(|line| &line.points);
+            let (low, high) = values
+                .map(|point| point[axis])
+                .filter(|value| value.is_finite())
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                    (low.min(value), high.max(value))
+                });
+            match (low.is_finite(), high > low) {
+                (false, _) => (0.0, 1.0),
+                (true, false) => (low - 1.0, low + 1.0),
+                (true, true) => (low, high),
+            }
+        };
+        let ((x0, x1), (y0, y1)) = (range(0), range(1));
+        let right = |x: f64| LEFT + (x - x0) / (x1 - x0) * (WIDTH - LEFT - 20.0);
+        let up = |y: f64| HEIGHT - TOP - (y - y0) / (y1 - y0) * (HEIGHT - 2.0 * TOP);
+        let mut svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {WIDTH} {HEIGHT}' font-family='sans-serif' \
+             font-size='12'><rect width='100%' height='100%' fill='white'/>\
+             <text x='{LEFT}' y='20' font-size='15'>{}</text>",
+            self.title
+        );
+        for step in 0..=5 {
+            let part = f64::from(step) / 5.0;
+            let (x, y) = (x0 + part * (x1 - x0), y0 + part * (y1 - y0));
+            let _ = write!(
+                svg,
+                "<path d='M{LEFT} {0:.1}H{1:.1}' stroke='#ddd'/><text x='{2}' y='{3:.1}' text-anchor='end'>{y:.3}</text>\
+                 <text x='{4:.1}' y='{5}' text-anchor='middle'>{x:.2}</text>",
+                up(y),
+                WIDTH - 20.0,
+                LEFT - 6.0,
+                up(y) + 4.0,
+                right(x),
+                HEIGHT - TOP + 18.0
+            );
+        }
+        for (line, (index, colour)) in self.lines.iter().zip(COLOURS.iter().cycle().enumerate()) {
+            let mut path = String::new();
+            let mut pen_down = false;
+            for point in &line.points {
+                if point.iter().all(|value| value.is_finite()) {
+                    let letter = if pen_down { 'L' } else { 'M' };
+                    let _ = write!(path, "{letter}{:.1} {:.1}", right(point[0]), up(point[1]));
+                    pen_down = true;
+                } else {
+                    pen_down = false;
+                }
+            }
+            let _ = write!(
+                svg,
+                "<path d='{path}' fill='none' stroke='{colour}' stroke-width='1.5'/>\
+                 <text x='{}' y='38' fill='{colour}'>{}</text>",
+                LEFT + 140.0 * index as f64,
+                line.name
+            );
+        }
+        let _ = write!(
+            svg,
+            "<text x='{}' y='{}' text-anchor='middle'>{}</text>\
+             <text transform='translate(14 {}) rotate(-90)' text-anchor='middle'>{}</text></svg>",
+            WIDTH / 2.0,
+            HEIGHT - 8.0,
+            self.x,
+            HEIGHT / 2.0,
+            self.y
+        );
+        svg
+    }
+}
