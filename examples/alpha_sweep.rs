@@ -12,7 +12,6 @@ mod picture;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use picture::{Line, Picture};
 use std::error::Error;
-use std::process::ExitCode;
 use vrduino::calibration::GyroBias;
 use vrduino::orientation::TimeConstant;
 use vrduino::orientation::complementary::Complementary;
@@ -99,10 +98,9 @@ fn run() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn main() -> ExitCode {
+fn main() {
     if let Err(problem) = run() {
         eprintln!("error: {problem}");
-        return ExitCode::FAILURE;
+        std::process::exit(1);
     }
-    ExitCode::SUCCESS
 }

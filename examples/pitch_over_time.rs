@@ -12,7 +12,6 @@ mod picture;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use picture::{Line, Picture};
 use std::error::Error;
-use std::process::ExitCode;
 use vrduino::calibration::GyroBias;
 use vrduino::orientation::angles::pitch_half_circle;
 use vrduino::orientation::complementary::Complementary;
@@ -58,7 +57,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         name,
         points: Vec::new(),
     });
-    let (mut squares, mut worst, mut compared) = ([0.0; 4], [0.0_f64; 4], 0.0);
+    let (mut squares, mut compared) = ([0.0; 4], 0.0);
     let seconds = motion.duration().unwrap_or(LONGEST).min(LONGEST);
     for step in 0..(seconds / PERIOD.0) as u32 {
         let t = f64::from(step) * PERIOD.0;
@@ -79,10 +78,8 @@ fn run() -> Result<(), Box<dyn Error>> {
         });
         if let Some(truth) = truth {
             compared += 1.0;
-            for (i, pitch) in pitches.into_iter().enumerate() {
-                let error = shortest_turn(truth, pitch).degrees();
-                squares[i] += error * error;
-                worst[i] = worst[i].max(error.abs());
+            for (sum, pitch) in squares.iter_mut().zip(pitches) {
+                *sum += shortest_turn(truth, pitch).degrees().powi(2);
             }
         }
         if step % 10 == 0 {
@@ -100,10 +97,9 @@ fn run() -> Result<(), Box<dyn Error>> {
         "its first {seconds:.1} s; time constant {} s",
         TIME_CONSTANT.0
     );
-    println!("{:13} {:>10} {:>12}", "", "rms error", "worst error");
-    for (line, (square, worst)) in lines.iter().zip(squares.iter().zip(worst)) {
-        let rms = (square / compared).sqrt();
-        println!("{:13} {rms:9.2}° {worst:11.2}°", line.name);
+    println!("{:13} {:>10}", "", "rms error");
+    for (line, square) in lines.iter().zip(squares) {
+        println!("{:13} {:9.2}°", line.name, (square / compared).sqrt());
     }
     let picture = Picture {
         title: "Pitch over time (lecture, 2016)",
@@ -115,10 +111,9 @@ fn run() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn main() -> ExitCode {
+fn main() {
     if let Err(problem) = run() {
         eprintln!("error: {problem}");
-        return ExitCode::FAILURE;
+        std::process::exit(1);
     }
-    ExitCode::SUCCESS
 }
