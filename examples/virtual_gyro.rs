@@ -58,10 +58,8 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
             sample_period,
             method,
         };
-        let made = estimates(
-            VirtualGyro::with_extraction(settings, extraction),
-            &instants,
-        );
+        let gyro = VirtualGyro::with_extraction(settings, extraction);
+        let made = estimates(gyro, &instants);
         let scores = (0..40).map(|late| (late, score(&made, &real, late)));
         let best = scores.min_by(|a, b| a.1[2].total_cmp(&b.1[2]));
         let best = best.filter(|(_, score)| score[2].is_finite());
@@ -76,12 +74,7 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
         println!("{}", path.display());
         std::io::Result::Ok(())
     };
-    draw(
-        "virtual_gyro_gravity",
-        "Extracted gravity",
-        "norm (g)",
-        norms,
-    )?;
+    draw("virtual_gyro_gravity", "Gravity", "norm (g)", norms)?;
     Ok(draw("virtual_gyro", "Rate about y", "rate (°/s)", rates)?)
 }
 
@@ -92,11 +85,10 @@ fn line(name: &'static str, estimates: &[Estimate], value: fn(&Estimate) -> f64)
 }
 
 fn estimates(mut gyro: VirtualGyro<f64, 5, 5>, instants: &[Instant]) -> Vec<Estimate> {
-    // The paper's axes are x ahead, y right, z down.
-    let paper = |v: [f64; 3]| Axes::NorthEastDown.from_y_up(Vector3::from(v));
+    let paper_axes = |v: [f64; 3]| Axes::NorthEastDown.from_y_up(Vector3::from(v));
     let mut feed = |instant: &Instant| {
-        let force = SpecificForce::from_m_per_s2(paper(instant.force));
-        let field = MagneticField::from_microtesla(paper(instant.magnetic_field()));
+        let force = SpecificForce::from_m_per_s2(paper_axes(instant.force));
+        let field = MagneticField::from_microtesla(paper_axes(instant.magnetic_field()));
         let estimate = gyro.update(force, Some(field)).ok()?;
         let rate = Axes::NorthEastDown.to_y_up(estimate.velocity?.device.dps());
         Some((estimate.fields.gravity.norm() / METRES_PER_S2_PER_G, rate))

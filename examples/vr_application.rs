@@ -3,8 +3,9 @@
 //! they are, the host does the rest by the method of section 4 and turns a camera.
 //!
 //! Run with `cargo run --example vr_application`, or behind it `-- RECORDING.imub`. Expect the three
-//! angles once in two seconds, and a camera that follows the truth by some degrees, a little late.
+//! angles once in two seconds, and a camera some ten degrees off while it moves, for it is late.
 
+use std::error::Error;
 use std::process::ExitCode;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -12,8 +13,8 @@ use vrduino::frames::axes::Axes;
 use vrduino::imu::RANGES;
 use vrduino::sensor::magnetometer::{RawField, Resolution, SensitivityAdjustment, to_body};
 use vrduino::sensor::{RawSample, Sample};
-use vrduino::units::{AngularRate, MagneticField, Seconds, SpecificForce};
-use vrduino::virtual_gyro::{Estimate, Method, Settings, VirtualGyro};
+use vrduino::units::{Angle, AngularRate, MagneticField, Seconds, SpecificForce};
+use vrduino::virtual_gyro::{Estimate, Method, Settings, TaitBryan, VirtualGyro};
 use vrduino_emulator::motion::{self, Head, Instant, Motion, MotionError};
 
 #[path = "picture/mod.rs"]
@@ -23,6 +24,8 @@ use picture::{Line, Picture};
 /// Lines a second.
 const RATE: f64 = 100.0;
 
+type Gyro = VirtualGyro<f64, 5, 5>;
+
 fn main() -> ExitCode {
     if let Err(error) = run() {
         eprintln!("error: {error}");
@@ -31,16 +34,16 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-fn run() -> Result<(), Box<dyn std::error::Error>> {
+fn run() -> Result<(), Box<dyn Error>> {
     let motion = motion()?;
     println!("{}", motion.describe());
     let count = (motion.duration().unwrap_or(30.0) * RATE) as u32;
-    let mut gyro = VirtualGyro::<f64, 5, 5>::new(Settings {
+    let mut gyro = Gyro::new(Settings {
         sample_period: Seconds(1.0 / RATE),
         method: Method::Matrix,
     });
     let mut angles: [Vec<[f64; 2]>; 3] = Default::default();
-    let (mut squares, mut compared) = (0.0, 0);
+    let mut squares = Vec::new();
     println!(
         "time (s)   six raw values                          roll   pitch     yaw (°)   off (°)"
     );
@@ -48,41 +51,29 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
         let t = f64::from(k) / RATE;
         let instant = motion.at(t);
         let line = board(&instant);
-        let Some(estimate) = host(&mut gyro, &line)? else {
+        let (Some(estimate), Some([w, x, y, z])) = (host(&mut gyro, &line)?, instant.truth) else {
             continue;
         };
-        let found = [
-            estimate.angles.roll,
-            estimate.angles.pitch,
-            estimate.angles.yaw,
-        ];
-        let found = found.map(|angle| angle.degrees());
+        let TaitBryan { roll, pitch, yaw } = estimate.angles;
+        let found = [roll, pitch, yaw].map(Angle::degrees);
         for (points, degrees) in angles.iter_mut().zip(found) {
             points.push([t, degrees]);
         }
         // What a renderer with y up takes for its camera.
         let camera = Axes::NorthEastDown.orientation_to_y_up(estimate.orientation);
-        let off = instant.truth.map(|[w, x, y, z]| {
-            let truth = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
-            camera.angle_to(&truth).to_degrees()
-        });
-        if let Some(off) = off {
-            squares += off * off;
-            compared += 1;
-        }
+        let truth = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+        let off = camera.angle_to(&truth).to_degrees();
+        squares.push(off * off);
         if k % 200 == 0 {
             let [roll, pitch, yaw] = found;
-            let off = off.map_or("-".into(), |off| format!("{off:.1}"));
-            println!("{t:8.2}   {line:36} {roll:7.1} {pitch:7.1} {yaw:7.1} {off:>13}");
+            println!("{t:8.2}   {line:36} {roll:7.1} {pitch:7.1} {yaw:7.1} {off:13.1}");
         }
     }
-    if angles[0].is_empty() {
-        return Err("no orientation: the motion is too short or has no magnetic field".into());
+    if squares.is_empty() {
+        return Err("too short, without magnetic field or without true orientation".into());
     }
-    println!(
-        "camera off by {:.2}° rms over {compared} lines",
-        (squares / f64::from(compared)).sqrt()
-    );
+    let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    println!("camera off by {rms:.2}° rms over {} lines", squares.len());
     let lines = ["roll", "pitch", "yaw"].into_iter().zip(angles);
     let picture = Picture {
         title: "Six raw values in, three angles out",
@@ -96,12 +87,9 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
 
 /// What the board sends: counts of accelerometer and magnetometer, each along its own axes.
 fn board(instant: &Instant) -> String {
-    let [ax, ay, az] = RANGES
-        .counts(&Sample {
-            rate: AngularRate::zero(),
-            force: SpecificForce::from_m_per_s2(Vector3::from(instant.force)),
-        })
-        .accel;
+    let (rate, force) = (AngularRate::zero(), Vector3::from(instant.force));
+    let force = SpecificForce::from_m_per_s2(force);
+    let [ax, ay, az] = RANGES.counts(&Sample { rate, force }).accel;
     let own = to_body(Vector3::from(instant.magnetic_field()));
     let counts = own / Resolution::Bits16.microtesla_per_count();
     let [mx, my, mz] = counts.map(|count| count.round() as i16).into();
@@ -109,33 +97,23 @@ fn board(instant: &Instant) -> String {
 }
 
 /// What the host makes of a line. None while the filters fill, and where nothing tells an attitude.
-fn host(
-    gyro: &mut VirtualGyro<f64, 5, 5>,
-    line: &str,
-) -> Result<Option<Estimate<f64>>, Box<dyn std::error::Error>> {
-    let numbers = line
-        .split(' ')
-        .map(str::parse)
-        .collect::<Result<Vec<i16>, _>>()?;
-    let [ax, ay, az, mx, my, mz] = numbers[..] else {
+fn host(gyro: &mut Gyro, line: &str) -> Result<Option<Estimate<f64>>, Box<dyn Error>> {
+    let numbers: Result<Vec<i16>, _> = line.split(' ').map(str::parse).collect();
+    let [ax, ay, az, mx, my, mz] = numbers?[..] else {
         return Err(format!("{line:?} is not six numbers").into());
     };
-    let raw = RawSample {
-        accel: [ax, ay, az],
-        ..RawSample::default()
-    };
+    let mut raw = RawSample::default();
+    raw.accel.copy_from_slice(&[ax, ay, az]);
     let raw_field = RawField {
         counts: [mx, my, mz],
         resolution: Resolution::Bits16,
         overflow: false,
     };
-    let force = RANGES.sample::<f64>(&raw).force.m_per_s2();
-    let field = raw_field
-        .field::<f64>(SensitivityAdjustment::NONE)?
-        .microtesla();
-    let paper = |v| Axes::NorthEastDown.from_y_up(v);
-    let force = SpecificForce::from_m_per_s2(paper(force));
-    let field = MagneticField::from_microtesla(paper(field));
+    let force = RANGES.sample(&raw).force.m_per_s2();
+    let field = raw_field.field(SensitivityAdjustment::NONE)?.microtesla();
+    let [force, field] = [force, field].map(|v| Axes::NorthEastDown.from_y_up(v));
+    let force = SpecificForce::from_m_per_s2(force);
+    let field = MagneticField::from_microtesla(field);
     Ok(gyro.update(force, Some(field)).ok())
 }
 
