@@ -3,7 +3,7 @@
 //! they are, the host does the rest by the method of section 4 and turns a camera.
 //!
 //! Run with `cargo run --example vr_application`, or behind it `-- RECORDING.imub`. Expect the three
-//! angles once in two seconds, and a camera some ten degrees off while it moves, for it is late.
+//! angles once in two seconds, and a camera some ten degrees (rms) off the truth.
 
 use std::error::Error;
 use std::process::ExitCode;
