@@ -70,17 +70,20 @@ impl Picture {
              <text x='{LEFT}' y='20' font-size='15'>{}</text>",
             self.title
         );
-        for step in 0..=5 {
-            let part = f64::from(step) / 5.0;
-            let (x, y) = (x0 + part * (x1 - x0), y0 + part * (y1 - y0));
+        for y in ticks(y0, y1) {
             let _ = write!(
                 svg,
-                "<path d='M{LEFT} {0:.1}H{1:.1}' stroke='#ddd'/><text x='{2}' y='{3:.1}' text-anchor='end'>{y:.3}</text>\
-                 <text x='{4:.1}' y='{5}' text-anchor='middle'>{x:.2}</text>",
+                "<path d='M{LEFT} {0:.1}H{1:.1}' stroke='#ddd'/><text x='{2}' y='{3:.1}' text-anchor='end'>{y}</text>",
                 up(y),
                 WIDTH - 20.0,
                 LEFT - 6.0,
-                up(y) + 4.0,
+                up(y) + 4.0
+            );
+        }
+        for x in ticks(x0, x1) {
+            let _ = write!(
+                svg,
+                "<text x='{:.1}' y='{}' text-anchor='middle'>{x}</text>",
                 right(x),
                 HEIGHT - TOP + 18.0
             );
@@ -117,4 +120,23 @@ impl Picture {
         );
         svg
     }
+}
+
+/// Round numbers from `low` to `high`, four to ten of them.
+fn ticks(low: f64, high: f64) -> Vec<f64> {
+    let rough = (high - low) / 5.0;
+    let decade = 10f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .map(|factor| factor * decade)
+        .into_iter()
+        .find(|step| *step >= rough)
+        .unwrap_or(rough);
+    let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
+    // Rounded, lest 0.3 show as 0.30000000000000004.
+    let round = |value: f64| (value / decade).round() * decade;
+    let digits = (-decade.log10().floor()).max(0.0) as i32;
+    (first..=last)
+        .map(|n| round(n as f64 * step))
+        .map(|value| (value * 10f64.powi(digits)).round() / 10f64.powi(digits))
+        .collect()
 }
