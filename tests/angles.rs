@@ -1,6 +1,9 @@
 //! Pitch and roll from the accelerometer (course notes, eq. 10 to 12; both lectures).
 
+mod random;
+
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
+use random::Random;
 use std::f64::consts::{FRAC_PI_2, PI};
 use vrduino::orientation::angles::{
     PitchRoll, full_pitch_and_roll, pitch_and_roll, pitch_full_circle, pitch_half_circle,
@@ -9,18 +12,7 @@ use vrduino::units::{Angle, SpecificForce};
 
 const G: f64 = 9.81;
 
-/// Reproducible random numbers (xorshift64*).
-struct Random(u64);
-
 impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        let bits = self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11;
-        low + (high - low) * (bits as f64 / (1_u64 << 53) as f64)
-    }
-
     /// Of any direction and of a length from 1 to 100.
     fn force(&mut self) -> [f64; 3] {
         loop {

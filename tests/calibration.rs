@@ -1,6 +1,9 @@
 //! The bias is taken from a board that lies still, and from no other.
 
+mod random;
+
 use nalgebra::Vector3;
+use random::Random;
 use vrduino::calibration::{GyroBias, Rest, Stillness, Verdict, WINDOW};
 use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample, Sample};
 use vrduino::units::{AngularRate, SpecificForce};
@@ -16,26 +19,16 @@ const COUNTS_PER_M_PER_S2: f64 = 2048.0 / 9.81;
 const GYRO_NOISE_DPS: f64 = 0.136;
 const FORCE_NOISE: f64 = 0.0435;
 
-/// A small generator of reproducible noise (xorshift64*).
-struct Noise(u64);
-
-impl Noise {
-    fn uniform(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
+impl Random {
     /// Standard normal, to the accuracy of twelve uniform summands.
     fn normal(&mut self) -> f64 {
-        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
+        (0..12).map(|_| self.unit()).sum::<f64>() - 6.0
     }
 }
 
 /// A window of a sensor that reads `motion(second)` (°/s, m/s²) plus the data sheet's noise.
 fn window(seed: u64, motion: impl Fn(f64) -> ([f64; 3], [f64; 3])) -> Vec<RawSample> {
-    let mut noise = Noise(seed * 2 + 1);
+    let mut noise = Random(seed * 2 + 1);
     let count = |value: f64| value.round().clamp(-32768.0, 32767.0) as i16;
     (0..WINDOW)
         .map(|i| {

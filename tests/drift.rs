@@ -1,6 +1,10 @@
 //! The blog post's drift correction is right where the post is not: for a gyro fixed to the body,
 //! in the order of tilt and yaw, and in the sign of yaw. The printed forms stand beside it.
 
+mod matrices;
+
+mod random;
+
 mod rotations;
 
 use nalgebra::{Matrix3, RealField, UnitQuaternion, Vector3, convert};

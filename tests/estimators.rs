@@ -1,5 +1,9 @@
 //! No input makes flatland and the angles of the accelerometer anything but angles.
 
+mod matrices;
+
+mod random;
+
 mod rotations;
 
 use nalgebra::{RealField, convert};

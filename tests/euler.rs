@@ -1,7 +1,13 @@
 //! Orientation in three angles (course notes, eq. 10; both lectures), and why nobody tracks with
 //! them (2016 lecture).
 
+mod matrices;
+
+mod random;
+
+use matrices::{Matrix, apply, degrees_between, product, transpose, turn};
 use nalgebra::{Matrix4, Point3, Quaternion, RealField, UnitQuaternion, Vector3, convert};
+use random::Random;
 use std::f64::consts::{FRAC_PI_2, PI};
 use vrduino::calibration::{GyroBias, Reading};
 use vrduino::orientation::TimeConstant;
@@ -14,22 +20,15 @@ use vrduino::units::{Angle, AngularRate, Seconds, SpecificForce};
 
 const G: f64 = 9.81;
 
-#[path = "euler/reference.rs"]
-mod reference;
-
-use reference::{Matrix, degrees_between};
-
-/// Reproducible random numbers (xorshift64*).
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        let bits = self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11;
-        low + (high - low) * (bits as f64 / (1_u64 << 53) as f64)
-    }
+/// R_z(−θ_z) R_x(−θ_x) R_y(−θ_y) of eq. 10, as it is printed there.
+fn eq_10(yaw: f64, pitch: f64, roll: f64) -> Matrix {
+    let (sz, cz) = (-roll).sin_cos();
+    let (sx, cx) = (-pitch).sin_cos();
+    let (sy, cy) = (-yaw).sin_cos();
+    let about_z = [[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]];
+    let about_x = [[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]];
+    let about_y = [[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]];
+    product(&product(&about_z, &about_x), &about_y)
 }
 
 fn angles<T: RealField + Copy>(yaw: f64, pitch: f64, roll: f64) -> EulerAngles<T> {
@@ -53,7 +52,7 @@ fn radians<T: RealField + Copy>(a: EulerAngles<T>) -> [f64; 3] {
 /// Body to world, by eq. 10.
 fn matrix<T: RealField + Copy>(a: EulerAngles<T>) -> Matrix {
     let [yaw, pitch, roll] = radians(a);
-    reference::transpose(&reference::eq_10(yaw, pitch, roll))
+    transpose(&eq_10(yaw, pitch, roll))
 }
 
 fn columns(q: UnitQuaternion<f64>) -> Matrix {
@@ -63,7 +62,7 @@ fn columns(q: UnitQuaternion<f64>) -> Matrix {
 
 /// What perfect sensors read on a body with this orientation (body to world) and rate (body).
 fn reading(truth: &Matrix, rate: [f64; 3]) -> Reading<f64> {
-    let force = reference::apply(&reference::transpose(truth), [0.0, G, 0.0]);
+    let force = apply(&transpose(truth), [0.0, G, 0.0]);
     GyroBias::zero().correct(Sample {
         rate: AngularRate::from_rad_per_s(Vector3::from(rate)),
         force: SpecificForce::from_m_per_s2(Vector3::from(force)),
@@ -81,7 +80,7 @@ fn conversions<T: RealField + Copy>(tolerance: f64) {
             _ => random.between(-FRAC_PI_2, FRAC_PI_2),
         };
         let these = angles::<T>(yaw, pitch, roll);
-        let expected = reference::eq_10(yaw, pitch, roll);
+        let expected = eq_10(yaw, pitch, roll);
         let r = these.world_to_body();
         for (row, elements) in expected.iter().enumerate() {
             for (column, element) in elements.iter().enumerate() {
@@ -160,7 +159,7 @@ fn the_rates_of_the_angles_integrate_to_the_turn_of_the_body() {
         state =
             [0, 1, 2].map(|i| state[i] + step / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
     }
-    let expected = reference::product(&start, &reference::turn(rate, 1.0));
+    let expected = product(&start, &turn(rate, 1.0));
     let found = matrix(angles::<f64>(state[0], state[1], state[2]));
     assert!(degrees_between(&found, &expected).to_radians() < 1e-9);
     let any = AngularRate::from_rad_per_s(Vector3::new(1.0, 1.0, 1.0));
@@ -180,7 +179,7 @@ fn reckoned(start: EulerAngles<f64>, rate_dps: [f64; 3], seconds: f64) -> (f64, 
         lecture.update(&reading);
         notes.update(&reading);
     }
-    let truth = reference::product(&matrix(start), &reference::turn(rate, seconds));
+    let truth = product(&matrix(start), &turn(rate, seconds));
     (
         degrees_between(&matrix(lecture.angles()), &truth),
         degrees_between(&columns(notes.orientation()), &truth),
@@ -203,9 +202,9 @@ fn the_lectures_dead_reckoning_is_right_for_one_axis_and_wrong_for_two() {
         assert!(notes < 1e-9, "{notes}");
     }
     // And the truth of the first is a yaw of 90°.
-    let turned = reference::product(
+    let turned = product(
         &matrix(degrees(0.0, 0.0, 90.0)),
-        &reference::turn([FRAC_PI_2, 0.0, 0.0], 1.0),
+        &turn([FRAC_PI_2, 0.0, 0.0], 1.0),
     );
     assert!(degrees_between(&turned, &matrix(degrees(90.0, 0.0, 90.0))) < 1e-9);
 }
@@ -222,7 +221,7 @@ fn filtered(start: EulerAngles<f64>, seconds: f64, rate: impl Fn(f64) -> [f64; 3
     let mut worst = (0.0_f64, 0.0_f64);
     for k in 0..(seconds / dt).round() as u32 {
         let rate = rate((f64::from(k) + 0.5) * dt);
-        truth = reference::product(&truth, &reference::turn(rate, dt));
+        truth = product(&truth, &turn(rate, dt));
         let reading = reading(&truth, rate);
         let found = matrix(lecture.update(&reading));
         worst.0 = worst.0.max(degrees_between(&found, &truth));
@@ -343,13 +342,13 @@ fn the_view_matrix_puts_the_eye_at_the_origin_and_its_gaze_along_minus_z() {
         let eye = [(); 3].map(|()| random.between(-5.0, 5.0));
         let view = angles::<f64>(yaw, pitch, roll).view_matrix(Point3::from(eye));
         // R T(−eye), element by element: R p − R eye.
-        let r = reference::eq_10(yaw, pitch, roll);
+        let r = eq_10(yaw, pitch, roll);
         let p = [(); 3].map(|()| random.between(-5.0, 5.0));
-        let expected = reference::apply(&r, [0, 1, 2].map(|i| p[i] - eye[i]));
+        let expected = apply(&r, [0, 1, 2].map(|i| p[i] - eye[i]));
         let seen = view.transform_point(&Point3::from(p));
         assert!((seen.coords - Vector3::from(expected)).amax() < 1e-12);
         assert!(view.transform_point(&Point3::from(eye)).coords.amax() < 1e-12);
-        let gaze = reference::apply(&reference::transpose(&r), [0.0, 0.0, -2.0]);
+        let gaze = apply(&transpose(&r), [0.0, 0.0, -2.0]);
         let ahead = Point3::from([0, 1, 2].map(|i| eye[i] + gaze[i]));
         let ahead = view.transform_point(&ahead).coords;
         assert!((ahead - Vector3::new(0.0, 0.0, -2.0)).amax() < 1e-12);

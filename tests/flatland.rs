@@ -1,6 +1,9 @@
 //! One angle (course notes, section 3): eq. 6 to 9, their corners, and how far they go astray.
 
+mod random;
+
 use nalgebra::{RealField, Vector3, convert};
+use random::Random;
 use std::f64::consts::{PI, TAU};
 use vrduino::calibration::{GyroBias, Reading};
 use vrduino::orientation::TimeConstant;
@@ -11,19 +14,6 @@ use vrduino::sensor::simulation::Gaussian;
 use vrduino::units::{Angle, AngularRate, Seconds, SpecificForce};
 
 const G: f64 = 9.81;
-
-/// Reproducible random numbers (xorshift64*).
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        let bits = self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11;
-        low + (high - low) * (bits as f64 / (1_u64 << 53) as f64)
-    }
-}
 
 fn reading<T: RealField + Copy>(rad_per_s: f64, m_per_s2: [f64; 3]) -> Reading<T> {
     GyroBias::zero().correct(Sample {

@@ -1,5 +1,9 @@
 //! The conversions between the documents' conventions, against frames written out as directions.
 
+mod matrices;
+
+mod random;
+
 #[path = "view/rotations.rs"]
 mod rotations;
 

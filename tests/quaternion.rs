@@ -1,6 +1,10 @@
 //! The quaternion algebra is that of rotation matrices, and closed where the notes leave corners
 //! open. As printed, eq. 34 and 36 stand here beside the library's.
 
+mod matrices;
+
+mod random;
+
 mod rotations;
 
 use nalgebra::{Matrix3, Quaternion, RealField, UnitQuaternion, Vector3, convert, try_convert};

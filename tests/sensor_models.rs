@@ -1,7 +1,10 @@
 //! Counts, units, and what a sensor makes of the truth (course notes, eq. 1 to 5; 001). The
 //! sensitivities of the data sheet are in `datasheet.rs`.
 
+mod random;
+
 use nalgebra::{Matrix3, RealField, UnitQuaternion, Vector3, convert};
+use random::Random;
 use vrduino::sensor::magnetometer::{
     self, FieldError, RawField, Resolution, SensitivityAdjustment,
 };
@@ -9,23 +12,6 @@ use vrduino::sensor::measurement::{Calibration, MeasurementModel, specific_force
 use vrduino::sensor::simulation::{Gaussian, SimulatedImu, SimulatedTriad};
 use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample, Sample};
 use vrduino::units::{AngularRate, MagneticField, SpecificForce};
-
-/// Reproducible random numbers (xorshift64*).
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        let bits = self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11;
-        low + (high - low) * (bits as f64 / (1_u64 << 53) as f64)
-    }
-
-    fn vector(&mut self, size: f64) -> [f64; 3] {
-        [(); 3].map(|()| self.between(-size, size))
-    }
-}
 
 /// Every range of the gyro, and beside it every range of the accelerometer.
 fn all_ranges() -> impl Iterator<Item = Ranges> {

@@ -1,6 +1,10 @@
 //! The tilt correction of the course notes, section 5.2, points up from anywhere and leaves yaw
 //! alone; so does the orientation that the accelerometer alone gives.
 
+mod matrices;
+
+mod random;
+
 mod rotations;
 
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};

@@ -1,6 +1,10 @@
 //! Tracking with quaternions follows the course notes, section 5, and no input makes it return
 //! anything but a rotation. Forms that are printed and wrong stand here beside the library's.
 
+mod matrices;
+
+mod random;
+
 mod rotations;
 
 use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};

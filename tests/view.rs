@@ -1,6 +1,10 @@
 //! What a viewer draws with, against cameras worked out from geometry; and algorithms 1 to 3 of the
 //! course notes call by call as printed, to show where they go wrong.
 
+mod matrices;
+
+mod random;
+
 #[path = "view/camera.rs"]
 mod camera;
 #[path = "view/gl.rs"]

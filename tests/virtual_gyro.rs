@@ -1,6 +1,10 @@
 //! The virtual gyroscope (document 002) beside matrices, dot products and differences written out
 //! here in double precision, and beside the printed forms where they are wrong.
 
+mod matrices;
+
+mod random;
+
 #[path = "virtual_gyro/reference.rs"]
 mod reference;
 

@@ -1,8 +1,7 @@
 //! Rotations once more, in double precision, with matrices and trigonometry instead of
 //! quaternions and series: it shares no arithmetic with the library. And inputs at random.
 
-// Every test file uses its own part of this.
-#![allow(dead_code)]
+#![allow(dead_code)] // Every test file uses its own part of this.
 
 use std::f64::consts::PI;
 
@@ -11,51 +10,12 @@ use vrduino::calibration::{GyroBias, Reading};
 use vrduino::sensor::Sample;
 use vrduino::units::{AngularRate, SpecificForce};
 
-pub type Vector = [f64; 3];
-pub type Matrix = [[f64; 3]; 3];
-
-pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-
-pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    let mut c = [[0.0; 3]; 3];
-    for (i, row) in c.iter_mut().enumerate() {
-        for (j, element) in row.iter_mut().enumerate() {
-            *element = (0..3).map(|k| a[i][k] * b[k][j]).sum();
-        }
-    }
-    c
-}
-
-pub fn apply(a: &Matrix, v: Vector) -> Vector {
-    [0, 1, 2].map(|i| (0..3).map(|k| a[i][k] * v[k]).sum())
-}
-
-pub fn transpose(a: &Matrix) -> Matrix {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[j][i]))
-}
-
-/// Rodrigues: about a unit axis by an angle.
-pub fn rotation(axis: Vector, angle: f64) -> Matrix {
-    let ([x, y, z], (s, c)) = (axis, angle.sin_cos());
-    let d = 1.0 - c;
-    [
-        [c + x * x * d, x * y * d - z * s, x * z * d + y * s],
-        [y * x * d + z * s, c + y * y * d, y * z * d - x * s],
-        [z * x * d - y * s, z * y * d + x * s, c + z * z * d],
-    ]
-}
-
-pub fn length(v: Vector) -> f64 {
-    v.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
+pub use crate::matrices::*;
+pub use crate::random::Random;
 
 /// Eq. 17 and 18.
 pub fn gyro(r: &Matrix, rate: Vector, dt: f64) -> Matrix {
-    let size = length(rate);
-    if size == 0.0 {
-        return *r;
-    }
-    product(r, &rotation(rate.map(|w| w / size), size * dt))
+    product(r, &turn(rate, dt))
 }
 
 /// Eq. 20 to 24. `share` is 1 − α.
@@ -67,26 +27,6 @@ pub fn tilt(r: &Matrix, force: Vector, share: f64) -> Matrix {
     }
     let axis = [-z / horizontal, 0.0, x / horizontal];
     product(&rotation(axis, share * horizontal.atan2(y)), r)
-}
-
-/// Reproducible random numbers (xorshift64*).
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    pub fn vector(&mut self, size: f64) -> [f64; 3] {
-        [(); 3].map(|()| self.between(-size, size))
-    }
 }
 
 pub fn reading<T: RealField + Copy>(rad_per_s: [f64; 3], m_per_s2: [f64; 3]) -> Reading<T> {
@@ -121,11 +61,6 @@ pub fn matrix<T: RealField + Copy>(q: &UnitQuaternion<T>) -> Matrix {
             w * w - x * x - y * y + z * z,
         ],
     ]
-}
-
-pub fn largest_difference(a: &Matrix, b: &Matrix) -> f64 {
-    let pairs = a.iter().flatten().zip(b.iter().flatten());
-    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 #[track_caller]
@@ -169,13 +104,6 @@ pub fn exponential(rotation_vector: Vector) -> Matrix {
         sum = product(&sum, &sum);
     }
     sum
-}
-
-/// The angle between two orientations, in radians, by the trace and the skew part of aᵀb.
-pub fn angle_between(a: &Matrix, b: &Matrix) -> f64 {
-    let r = product(&transpose(a), b);
-    let skew = [r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]];
-    length(skew).atan2(r[0][0] + r[1][1] + r[2][2] - 1.0)
 }
 
 impl Random {

@@ -1,50 +1,9 @@
-//! Rotations as plain arrays in double precision: no quaternion, no nalgebra.
+//! Rotations at random, with the corners among them.
 
-pub type Vector = [f64; 3];
-pub type Matrix = [[f64; 3]; 3];
-
-pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
-}
-
-pub fn apply(a: &Matrix, v: Vector) -> Vector {
-    [0, 1, 2].map(|i| (0..3).map(|k| a[i][k] * v[k]).sum())
-}
-
-pub fn transpose(a: &Matrix) -> Matrix {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[j][i]))
-}
-
-/// Rodrigues: about a unit axis by an angle in radians.
-pub fn rotation(axis: Vector, angle: f64) -> Matrix {
-    let ([x, y, z], (s, c)) = (axis, angle.sin_cos());
-    let d = 1.0 - c;
-    [
-        [c + x * x * d, x * y * d - z * s, x * z * d + y * s],
-        [y * x * d + z * s, c + y * y * d, y * z * d - x * s],
-        [z * x * d - y * s, z * y * d + x * s, c + z * z * d],
-    ]
-}
-
-/// Reproducible random numbers (xorshift64*).
-pub struct Random(pub u64);
+pub use crate::matrices::{Matrix, Vector, apply, length, product, rotation, transpose};
+pub use crate::random::Random;
 
 impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    pub fn vector(&mut self, size: f64) -> Vector {
-        [(); 3].map(|()| self.between(-size, size))
-    }
-
     /// A unit vector; the six axes themselves now and then.
     pub fn direction(&mut self) -> Vector {
         loop {
@@ -53,9 +12,9 @@ impl Random {
                 let axis = self.between(0.0, 3.0) as usize;
                 v = [0, 1, 2].map(|i| if i == axis { v[i].signum() } else { 0.0 });
             }
-            let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if (0.1..=1.0).contains(&length) {
-                return v.map(|x| x / length);
+            let size = length(v);
+            if (0.1..=1.0).contains(&size) {
+                return v.map(|x| x / size);
             }
         }
     }

@@ -3,20 +3,11 @@
 use nalgebra::{RealField, Rotation3, UnitQuaternion, Vector3, convert, try_convert};
 use vrduino::virtual_gyro::{Directions, Fields, TaitBryan};
 
-pub type Vector = [f64; 3];
-pub type Matrix = [[f64; 3]; 3];
-
-pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
-}
-
-pub fn apply(a: &Matrix, v: Vector) -> Vector {
-    [0, 1, 2].map(|i| (0..3).map(|k| a[i][k] * v[k]).sum())
-}
-
-pub fn transpose(a: &Matrix) -> Matrix {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[j][i]))
-}
+pub use crate::matrices::{
+    Matrix, Vector, apply, degrees_between, largest_difference, product, rotation as about,
+    transpose,
+};
+pub use crate::random::Random;
 
 /// The three matrices of section 3.1, as printed.
 pub fn rz(psi: f64) -> Matrix {
@@ -39,37 +30,11 @@ pub fn r([phi, theta, psi]: Vector) -> Matrix {
     product(&rx(phi), &product(&ry(theta), &rz(psi)))
 }
 
-/// Rodrigues: vectors turned about a unit axis.
-pub fn about([x, y, z]: Vector, angle: f64) -> Matrix {
-    let (s, c) = angle.sin_cos();
-    let d = 1.0 - c;
-    [
-        [c + x * x * d, x * y * d - z * s, x * z * d + y * s],
-        [y * x * d + z * s, c + y * y * d, y * z * d - x * s],
-        [z * x * d - y * s, z * y * d + x * s, c + z * z * d],
-    ]
-}
-
-/// The largest difference of two matrices' elements.
-pub fn distance(a: &Matrix, b: &Matrix) -> f64 {
-    let pairs = a.iter().flatten().zip(b.iter().flatten());
-    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-}
-
 pub fn apart(a: Vector, b: Vector) -> f64 {
     a.iter()
         .zip(b)
         .map(|(a, b)| (a - b).abs())
         .fold(0.0, f64::max)
-}
-
-/// The angle between two rotations, in degrees.
-pub fn degrees_between(a: &Matrix, b: &Matrix) -> f64 {
-    let d = product(a, &transpose(b));
-    let sine = (d[2][1] - d[1][2])
-        .hypot(d[0][2] - d[2][0])
-        .hypot(d[1][0] - d[0][1]);
-    sine.atan2(d[0][0] + d[1][1] + d[2][2] - 1.0).to_degrees()
 }
 
 /// g_r and B_r (9.81 m/s² and 48 µT) turned into the device frame by R.
@@ -133,25 +98,7 @@ pub fn negated(q: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(-q.into_inner())
 }
 
-/// Reproducible random numbers (xorshift64*).
-pub struct Random(pub u64);
-
 impl Random {
-    pub fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    pub fn vector(&mut self, size: f64) -> Vector {
-        [(); 3].map(|()| self.between(-size, size))
-    }
-
     /// φ, θ, ψ over their ranges; every eighth close to or at θ = ±π/2, or upside down.
     pub fn attitude(&mut self) -> Vector {
         use std::f64::consts::{FRAC_PI_2, PI};

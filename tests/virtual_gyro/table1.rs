@@ -124,7 +124,10 @@ fn the_method_finds_the_attitude_of_every_corrected_row() {
                 GimbalLock::Resolve,
                 previous,
             ));
-            assert!(distance(&r(found), &attitude) < 1e-12, "{angles:?}");
+            assert!(
+                largest_difference(&r(found), &attitude) < 1e-12,
+                "{angles:?}"
+            );
             assert!(found[1].abs() <= FRAC_PI_2, "θ of eq. 4 stays in its range");
             // With a roll to keep, the row itself comes back.
             if angles[1].abs() == FRAC_PI_2 && previous.is_some() {

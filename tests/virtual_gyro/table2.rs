@@ -13,7 +13,7 @@ fn rotation<T: RealField + Copy>(m: &Matrix) -> Rotation3<T> {
 fn error<T: RealField + Copy>(m: &Matrix) -> f64 {
     let q = scalar_last(&from_matrix::<T>(&rotation(m)).expect("a rotation"));
     let length: f64 = q.iter().map(|c| c * c).sum::<f64>().sqrt();
-    distance(&transpose(&sandwich(q)), m).max((length - 1.0).abs())
+    largest_difference(&transpose(&sandwich(q)), m).max((length - 1.0).abs())
 }
 
 /// Attitudes, half turns about every kind of axis, and the corners between the cases.
