@@ -107,11 +107,11 @@ impl<T: RealField + Copy> Fusion<T> {
             .and_then(|field| {
                 let turning = self.rate.rad_per_s();
                 self.heading
-                    .update(self.inclination.to_world(field), turning)
+                    .update(self.inclination.in_world(field), turning)
             });
         if !matches!(motion, Motion::Still { .. }) {
             let error = self.bias.integrals(tilt_error, heading_error);
-            self.bias.shift(self.inclination.to_body(error));
+            self.bias.shift(self.inclination.in_body(error));
         }
         self.orientation()
     }

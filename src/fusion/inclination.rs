@@ -93,12 +93,12 @@ impl<T: RealField + Copy> Inclination<T> {
     }
 
     /// A vector of the body as seen from the world.
-    pub fn to_world(&self, v: Vector3<T>) -> Vector3<T> {
+    pub fn in_world(&self, v: Vector3<T>) -> Vector3<T> {
         self.orientation * v
     }
 
     /// A vector of the world as seen from the body.
-    pub fn to_body(&self, v: Vector3<T>) -> Vector3<T> {
+    pub fn in_body(&self, v: Vector3<T>) -> Vector3<T> {
         self.orientation.inverse_transform_vector(&v)
     }
 
