@@ -137,6 +137,8 @@ fn a_share_of_the_error_is_taken_out_along_its_own_axis() {
         let (axis, angle) = (random.direction(), random.between(0.0, 3.1));
         let (truth, alpha) = (random.rotation(), random.unit());
         let d = from_axis_angle(Vector3::from(axis), Angle::from_rad(angle)).expect("an axis");
+        let sign = if random.unit() < 0.5 { 1.0 } else { -1.0 };
+        let d = UnitQuaternion::new_unchecked(d.into_inner() * sign);
         let start = product(&rotation(axis, angle), &truth);
         let start = from_matrix(&Matrix3::from_fn(|i, j| start[i][j]));
         let q = correct(start.expect("a rotation"), d, alpha);
@@ -274,6 +276,23 @@ fn the_strength_of_gravity_plays_no_part() {
     let (up, tenth) = ([3.0, 8.0, -4.0], [0.3, 0.8, -0.4]);
     let apart = largest_difference(&settled(up, 0.1), &settled(tenth, 0.1));
     assert!(apart < 1e-12, "{apart:e}");
+}
+
+#[test]
+fn a_gain_outside_of_0_to_1_is_the_nearer_end() {
+    let wrong = unit_quaternion::<f64>([0.8, 0.0, 0.6, 0.0]);
+    let all = matrix(&wrong);
+    for (gain, left) in [
+        (-3.0, all),
+        (f64::NAN, all),
+        (1.5, IDENTITY),
+        (f64::INFINITY, IDENTITY),
+    ] {
+        let mut filter = DriftCorrection::new(gain, Seconds(DT));
+        filter.set(wrong);
+        let q = filter.update(&reading([0.0; 3], [0.0, G, 0.0]), Some(field(earth(60.0))));
+        assert!(largest_difference(&matrix(&q), &left) < 1e-12, "{gain}");
+    }
 }
 
 #[test]
