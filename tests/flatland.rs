@@ -263,11 +263,21 @@ fn a_bias_drifts_for_ever_in_the_gyro_and_stops_in_the_filter() {
         flat.update(&reading(bias, tilted(0.0)));
     }
     let offset = error::fused_offset(about_z(bias), time_constant(alpha, dt));
+    let offset = offset.expect("it stands still");
     assert!((offset.degrees() - 0.49).abs() < 1e-9);
     assert!((flat.roll().fused.degrees() - offset.degrees()).abs() < 1e-9);
     let drift = error::gyro_drift(about_z(bias), Seconds(60.0));
     assert!((drift.degrees() - 60.0).abs() < 1e-9);
     assert!((flat.roll().gyro.degrees() - drift.degrees()).abs() < 1e-9);
+    // The gyro alone never stands still.
+    for alpha in [1.0, 1.5, f64::NAN] {
+        for bias in [bias, 0.0] {
+            let gyro_alone = time_constant(alpha, dt);
+            assert_eq!(error::fused_offset(about_z(bias), gyro_alone), None);
+        }
+    }
+    let no_bias = about_z(f64::NAN);
+    assert_eq!(error::fused_offset(no_bias, time_constant(alpha, dt)), None);
 }
 
 /// Eq. 6 over a motion θ(t) with rate ω(t): estimate minus truth at the end.
@@ -344,10 +354,13 @@ fn fused_is_calmer_than_the_accelerometer_and_truer_than_the_gyro() {
 #[test]
 fn alpha_outside_0_to_1_counts_as_the_nearer_end() {
     for (alpha, fused) in [
+        (f64::NEG_INFINITY, 0.4),
+        (-1e300, 0.4),
         (-0.5, 0.4),
         (0.0, 0.4),
         (1.0, 0.1),
         (1.5, 0.1),
+        (f64::INFINITY, 0.1),
         (f64::NAN, 0.1),
     ] {
         let mut flat = filter(alpha, 0.01);

@@ -403,6 +403,7 @@ fn alpha_is_the_weight_of_the_gyro() {
         );
     }
     for (bad, taken) in [
+        (f64::NEG_INFINITY, 0.0),
         (-0.5, 0.0),
         (1.5, 1.0),
         (f64::NAN, 1.0),

@@ -100,7 +100,8 @@ pub fn from_accelerometer<T: RealField + Copy>(force: SpecificForce<T>) -> Optio
     directed.then(|| Angle::from_rad(a.x.atan2(a.y)))
 }
 
-/// The difference between two angles, the short way round: from −180° to 180°.
+/// The difference between two angles, the short way round: from −180° to 180°. Not finite if one of
+/// the angles is not.
 pub fn shortest_turn<T: RealField + Copy>(from: Angle<T>, to: Angle<T>) -> Angle<T> {
     Angle::from_rad(wrapped(to.rad() - from.rad()))
 }
