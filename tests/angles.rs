@@ -187,6 +187,19 @@ fn eq_10_has_pitch_about_x_and_roll_about_z_and_no_yaw() {
 }
 
 #[test]
+fn an_angle_that_is_not_finite_counts_as_zero() {
+    let up = |pitch, roll| {
+        let [pitch, roll] = [pitch, roll].map(Angle::from_rad);
+        PitchRoll { pitch, roll }.up_in_body()
+    };
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!((up(bad, 0.3) - Vector3::from(eq_10(0.0, 0.3))).amax() < 1e-15);
+        assert!((up(0.3, bad) - Vector3::from(eq_10(0.3, 0.0))).amax() < 1e-15);
+        assert_eq!(up(bad, bad), Vector3::y());
+    }
+}
+
+#[test]
 fn pitch_and_roll_are_those_of_the_orientation() {
     let (pitch, roll) = (10.0_f64.to_radians(), 170.0_f64.to_radians());
     let x = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), pitch);

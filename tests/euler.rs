@@ -5,7 +5,7 @@ mod matrices;
 
 mod random;
 
-use matrices::{Matrix, apply, degrees_between, product, transpose, turn};
+use matrices::{Matrix, apply, degrees_between, largest_difference, product, transpose, turn};
 use nalgebra::{Matrix4, Point3, Quaternion, RealField, UnitQuaternion, Vector3, convert};
 use random::Random;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -130,6 +130,26 @@ fn at_gimbal_lock_yaw_has_the_turn_and_roll_is_zero() {
     assert_eq!(EulerAngles::of(nothing), EulerAngles::zero());
     let nothing = UnitQuaternion::new_unchecked(Quaternion::new(0.0_f64, 0.0, 0.0, 0.0));
     assert_eq!(EulerAngles::of(nothing), EulerAngles::zero());
+}
+
+#[test]
+fn an_angle_that_is_not_finite_counts_as_zero() {
+    let sound = [0.1, 0.2, 0.3];
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for which in 0..3 {
+            let (mut given, mut taken) = (sound, sound);
+            (given[which], taken[which]) = (bad, 0.0);
+            let [yaw, pitch, roll] = given;
+            let found = angles::<f64>(yaw, pitch, roll);
+            let [yaw, pitch, roll] = taken;
+            let expected = eq_10(yaw, pitch, roll);
+            let to_body = found.world_to_body();
+            let to_body = [0, 1, 2].map(|i| [0, 1, 2].map(|j| to_body[(i, j)]));
+            assert!(largest_difference(&to_body, &expected) < 1e-12);
+            let to_world = columns(found.orientation());
+            assert!(largest_difference(&to_world, &transpose(&expected)) < 1e-12);
+        }
+    }
 }
 
 #[test]
