@@ -7,7 +7,7 @@ mod random;
 
 mod rotations;
 
-use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
+use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
 use rotations::{Random, largest_difference, matrix, rotation};
 use std::f64::consts::PI;
 use vrduino::orientation::complementary::Complementary;
@@ -69,6 +69,19 @@ fn the_corners_the_notes_leave_open_are_closed() {
     assert_eq!(half_turn.j, 0.0);
     let tenth = tilt::correction(force(0.0, -G, 0.0), 0.1);
     assert!((tenth.angle() - PI / 10.0).abs() < 1e-12);
+}
+
+#[test]
+fn levelling_what_is_no_orientation_starts_from_the_identity() {
+    let force = SpecificForce::from_m_per_s2(Vector3::new(3.0, -1.0, 2.0));
+    let expected = tilt::level(UnitQuaternion::identity(), force);
+    for bad in [0.0, f64::NAN, f64::INFINITY] {
+        let none = UnitQuaternion::new_unchecked(Quaternion::new(bad, bad, 0.0, 0.0));
+        assert_eq!(tilt::level(none, force), expected);
+    }
+    // Of twice the length it is one all the same.
+    let long = UnitQuaternion::new_unchecked(Quaternion::new(0.0, 2.0, 0.0, 0.0));
+    assert!((tilt::level(long, force).norm() - 1.0).abs() < 1e-12);
 }
 
 #[test]
