@@ -50,6 +50,27 @@ fn every_count_of_every_range_has_the_value_of_eq_5_with_the_divisor_of_the_data
 }
 
 #[test]
+fn each_axis_of_the_die_is_that_axis_of_the_body() {
+    // Figure 2, left. At ±250 °/s and ±2 g; all six counts differ.
+    let ranges = Ranges {
+        gyro: GyroRange::Dps250,
+        accel: AccelRange::G2,
+    };
+    let raw = RawSample {
+        gyro: [16384, -8192, 4096],
+        accel: [-2048, 1024, 512],
+        ..RawSample::default()
+    };
+    let sample = ranges.sample::<f64>(&raw);
+    let dps = Vector3::new(125.0, -62.5, 31.25);
+    let g = Vector3::new(-0.125, 0.0625, 0.03125);
+    assert!((sample.rate.dps() - dps).amax() < 1e-12);
+    assert!((sample.force.g() - g).amax() < 1e-15);
+    let again = ranges.counts(&sample);
+    assert_eq!((again.gyro, again.accel), (raw.gyro, raw.accel));
+}
+
+#[test]
 fn eq_5_as_printed_leaves_the_range_and_misses_the_sensitivity_of_the_data_sheet() {
     // One count below the end: −250.0076 °/s of a ±250 °/s range.
     assert!((printed_eq_5(i16::MIN, 250.0) + 250.007_63).abs() < 1e-5);
