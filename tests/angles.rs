@@ -142,6 +142,10 @@ fn the_arc_sine_of_the_notes_is_ambiguous_and_the_full_circle_is_not() {
     assert!((-a[2].asin() - near).abs() < 1e-12 && (-b[2].asin() - near).abs() < 1e-12);
     assert!((pitch_full_circle(force::<f64>(a)).rad() - near).abs() < 1e-12);
     assert!((pitch_full_circle(force::<f64>(b)).rad() - far).abs() < 1e-12);
+    // Eq. 11 between its two ends: the quotient is tan(−θ_x) only where cos θ_x > 0.
+    let quotient = |a: [f64; 3]| a[2] / a[0].hypot(a[1]);
+    assert!((quotient(a) - (-near).tan()).abs() < 1e-12);
+    assert!((quotient(b) + (-far).tan()).abs() < 1e-12);
     // The 2016 lecture's first form gives the arc sine's angle.
     assert!((pitch_half_circle(force::<f64>(b)).rad() - near).abs() < 1e-12);
 }

@@ -178,6 +178,18 @@ fn eq_23_as_printed_has_no_axis_at_the_poles() {
 }
 
 #[test]
+fn eq_22_is_about_directions() {
+    // As printed it turns a force of 9.81 m/s² into a vector of length 1.
+    let mut random = Random(46);
+    for _ in 0..10_000 {
+        let a = random.direction().map(|c| c * G);
+        let turned = tilt::correction::<f64>(force(a), 1.0) * Vector3::from(a);
+        assert!((turned - Vector3::y()).norm() > 8.8);
+        assert!((turned / G - Vector3::y()).norm() < 1e-10);
+    }
+}
+
+#[test]
 fn v_cross_up_is_as_long_as_the_sine_of_the_tilt() {
     // The 2016 lecture equates v × (0, 1, 0) with the same vector normalised.
     for phi in [0.1_f64, 1.0, 2.0] {
