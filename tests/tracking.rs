@@ -271,6 +271,32 @@ fn one_update_of_the_filter_is_eq_24() {
 }
 
 #[test]
+fn what_is_not_finite_turns_nothing_and_corrects_nothing() {
+    let (rate, up) = ([0.3, -0.2, 0.5], [1.0, 9.0, -2.0]);
+    let tau = TimeConstant::from_gyro_weight(0.9, Seconds(DT));
+    let updated = |rate, force| {
+        let mut filter = Complementary::new(tau, Seconds(DT));
+        filter.set(unit_quaternion::<f64>([0.5, -0.5, 0.5, 0.5]));
+        let start = matrix(&filter.orientation());
+        (start, matrix(&filter.update(&reading(rate, force))))
+    };
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for axis in 0..3 {
+            let (mut bad_rate, mut bad_force) = (rate, up);
+            (bad_rate[axis], bad_force[axis]) = (bad, bad);
+            let (start, q) = updated(bad_rate, up);
+            assert!(largest_difference(&q, &notes_tilt(&start, up, 0.1)) < 1e-9);
+            let (start, q) = updated(rate, bad_force);
+            assert!(largest_difference(&q, &notes_step(&start, rate, DT)) < 1e-9);
+            let (start, q) = updated(bad_rate, bad_force);
+            assert!(largest_difference(&q, &start) < 1e-15);
+        }
+    }
+    let (start, q) = updated(rate, [0.0; 3]);
+    assert!(largest_difference(&q, &notes_step(&start, rate, DT)) < 1e-9);
+}
+
+#[test]
 fn the_error_of_integration_goes_with_the_time_step_not_with_its_square() {
     // Two seconds of coning, with the rate held over every step: R = Rz(3t) Rx(sin 2t) has this
     // rate in the body.
