@@ -1,7 +1,10 @@
 //! One angle (course notes, section 3): eq. 6 to 9, their corners, and how far they go astray.
 
+mod matrices;
+
 mod random;
 
+use matrices::larger;
 use nalgebra::{RealField, Vector3, convert};
 use random::Random;
 use std::f64::consts::{PI, TAU};
@@ -62,7 +65,7 @@ fn deviation_from_the_notes<T: RealField + Copy>() -> f64 {
                 (roll.accelerometer, truth),
                 (roll.fused, fused),
             ] {
-                worst = worst.max((as_f64(is) - expected).abs());
+                worst = larger(worst, (as_f64(is) - expected).abs());
             }
         }
     }
@@ -316,7 +319,7 @@ fn most_drift_is_bias_and_the_integration_error_is_bounded() {
         let t = f64::from(k) * dt;
         let rate = amplitude * TAU * (TAU * t).cos();
         let angle = flat.update(&reading(rate, [0.0; 3])).gyro.rad();
-        worst = worst.max((angle - amplitude * (TAU * (t + dt)).sin()).abs());
+        worst = larger(worst, (angle - amplitude * (TAU * (t + dt)).sin()).abs());
     }
     assert!((0.37..0.38).contains(&worst.to_degrees()), "{worst}");
     let bias = about_z(0.1_f64.to_radians());
