@@ -407,6 +407,30 @@ fn no_time_no_turn_and_no_input_leaves_the_circle() {
     }
 }
 
+#[test]
+fn what_is_not_finite_turns_nothing_and_corrects_nothing() {
+    let after = |rate, force| {
+        let mut flat = filter(0.9, 0.01);
+        flat.start_at(Angle::from_rad(0.4));
+        let roll = flat.update(&reading(rate, force));
+        [roll.gyro, roll.accelerometer, roll.fused].map(|angle| angle.rad())
+    };
+    let near = |is: [f64; 3], expected: [f64; 3]| {
+        let pairs = is.into_iter().zip(expected);
+        assert!(
+            pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-12),
+            "{is:?}"
+        );
+    };
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        near(after(bad, tilted(0.5)), [0.4, 0.5, 0.41]);
+        near(after(1.0, [bad, G, 0.0]), [0.41, 0.4, 0.41]);
+        near(after(bad, [0.0, bad, 0.0]), [0.4; 3]);
+    }
+    // Free fall.
+    near(after(1.0, [0.0; 3]), [0.41, 0.4, 0.41]);
+}
+
 fn huge_turns_stay_on_the_circle<T: RealField + Copy>(largest_exponent: f64) {
     let mut random = Random(4);
     for _ in 0..100_000 {

@@ -62,9 +62,11 @@ impl<T: RealField + Copy> Flatland<T> {
         self.start_at(from_accelerometer(force).unwrap_or(Angle::from_rad(T::zero())));
     }
 
-    /// One sample. What is not finite in it changes nothing.
+    /// One sample. A rate that is not finite turns nothing, and a force without a direction in the
+    /// plane corrects nothing.
     pub fn update(&mut self, reading: &Reading<T>) -> Roll<T> {
-        let turned = reading.rate().rad_per_s().z * self.sample_period.0;
+        let turned = Angle::from_rad(reading.rate().rad_per_s().z * self.sample_period.0);
+        let turned = turned.finite_or_zero().rad();
         // Eq. 7.
         let gyro = self.roll.gyro.rad() + turned;
         // Eq. 9. The notes blend the two angles, which across the seam gives nonsense: half way
