@@ -10,8 +10,8 @@ mod rotations;
 use nalgebra::{Matrix3, RealField, UnitQuaternion, Vector3, convert};
 use rotations::{
     IDENTITY, Matrix, Random, angle_between, anything, apply, assert_is_a_rotation, exponential,
-    largest_difference, length, matrix, product, random_quaternion, reading, rotation, transpose,
-    unit_quaternion,
+    larger, largest_difference, length, matrix, product, random_quaternion, reading, rotation,
+    transpose, unit_quaternion,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 use vrduino::calibration::Reading;
@@ -352,7 +352,7 @@ fn an_error_of_a_ten_thousandth_is_resolved_in_single_precision() {
         ));
         assert!((d.angle.rad() - 1e-4).abs() < 1e-6, "{d:?}");
         let off = (0..3).map(|i| (f64::from(d.axis[i]) - axis[i]).abs());
-        assert!(off.fold(0.0, f64::max) < 0.01, "{d:?}");
+        assert!(off.fold(0.0, larger) < 0.01, "{d:?}");
     }
 }
 

@@ -5,7 +5,7 @@ mod matrices;
 
 mod random;
 
-use matrices::{Matrix, apply, degrees_between, product, transpose, turn};
+use matrices::{Matrix, apply, degrees_between, largest_difference, product, transpose, turn};
 use nalgebra::{Matrix4, Point3, Quaternion, RealField, UnitQuaternion, Vector3, convert};
 use random::Random;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -90,12 +90,12 @@ fn conversions<T: RealField + Copy>(tolerance: f64) {
         }
         let q = these.orientation();
         let product = r * q.to_rotation_matrix();
-        assert!((product.matrix() - nalgebra::Matrix3::identity()).amax() < convert(tolerance));
+        assert!((product.matrix() - nalgebra::Matrix3::identity()).norm() < convert(tolerance));
         // Back to angles: the same orientation, and away from gimbal lock the same angles.
         let found = EulerAngles::of(q);
         let again = found.world_to_body();
         assert!(
-            (again.matrix() - r.matrix()).amax() < convert(tolerance),
+            (again.matrix() - r.matrix()).norm() < convert(tolerance),
             "{these:?}"
         );
         if i % 3 == 2 {
@@ -130,6 +130,26 @@ fn at_gimbal_lock_yaw_has_the_turn_and_roll_is_zero() {
     assert_eq!(EulerAngles::of(nothing), EulerAngles::zero());
     let nothing = UnitQuaternion::new_unchecked(Quaternion::new(0.0_f64, 0.0, 0.0, 0.0));
     assert_eq!(EulerAngles::of(nothing), EulerAngles::zero());
+}
+
+#[test]
+fn an_angle_that_is_not_finite_counts_as_zero() {
+    let sound = [0.1, 0.2, 0.3];
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for which in 0..3 {
+            let (mut given, mut taken) = (sound, sound);
+            (given[which], taken[which]) = (bad, 0.0);
+            let [yaw, pitch, roll] = given;
+            let found = angles::<f64>(yaw, pitch, roll);
+            let [yaw, pitch, roll] = taken;
+            let expected = eq_10(yaw, pitch, roll);
+            let to_body = found.world_to_body();
+            let to_body = [0, 1, 2].map(|i| [0, 1, 2].map(|j| to_body[(i, j)]));
+            assert!(largest_difference(&to_body, &expected) < 1e-12);
+            let to_world = columns(found.orientation());
+            assert!(largest_difference(&to_world, &transpose(&expected)) < 1e-12);
+        }
+    }
 }
 
 #[test]
@@ -346,12 +366,12 @@ fn the_view_matrix_puts_the_eye_at_the_origin_and_its_gaze_along_minus_z() {
         let p = [(); 3].map(|()| random.between(-5.0, 5.0));
         let expected = apply(&r, [0, 1, 2].map(|i| p[i] - eye[i]));
         let seen = view.transform_point(&Point3::from(p));
-        assert!((seen.coords - Vector3::from(expected)).amax() < 1e-12);
-        assert!(view.transform_point(&Point3::from(eye)).coords.amax() < 1e-12);
+        assert!((seen.coords - Vector3::from(expected)).norm() < 1e-12);
+        assert!(view.transform_point(&Point3::from(eye)).coords.norm() < 1e-12);
         let gaze = apply(&transpose(&r), [0.0, 0.0, -2.0]);
         let ahead = Point3::from([0, 1, 2].map(|i| eye[i] + gaze[i]));
         let ahead = view.transform_point(&ahead).coords;
-        assert!((ahead - Vector3::new(0.0, 0.0, -2.0)).amax() < 1e-12);
+        assert!((ahead - Vector3::new(0.0, 0.0, -2.0)).norm() < 1e-12);
     }
 }
 
@@ -384,7 +404,7 @@ fn a_vertex_goes_through_model_view_and_projection_in_this_order() {
     let clip = to_clip_space(&projection, &view, &model, Point3::new(0.0, 0.0, 2.0));
     let depth = 10.0 * 102.0 / 100.0 - 202.0 / 100.0;
     let expected = nalgebra::Vector4::new(-1.0, 1.0, depth, 10.0);
-    assert!((clip - expected).amax() < 1e-12, "{clip}");
+    assert!((clip - expected).norm() < 1e-12, "{clip}");
 }
 
 #[test]

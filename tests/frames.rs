@@ -8,7 +8,7 @@ mod random;
 mod rotations;
 
 use nalgebra::{Matrix3, Quaternion, RealField, UnitQuaternion, Vector3, try_convert};
-use rotations::{Matrix, Random, Vector, apply, axis_angle, product, rotation, transpose};
+use rotations::{Matrix, Random, Vector, apply, axis_angle, larger, product, rotation, transpose};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
 use vrduino::frames::angles::{short_way, whole_turn};
 use vrduino::frames::axes::Axes;
@@ -48,7 +48,7 @@ fn quaternion<T: RealField + Copy>(axis: Vector, angle: f64) -> UnitQuaternion<T
 fn off<T: RealField + Copy>(matrix: &Matrix3<T>, reference: &Matrix) -> f64 {
     (0..9)
         .map(|k| (number(matrix[(k / 3, k % 3)]) - reference[k / 3][k % 3]).abs())
-        .fold(0.0, f64::max)
+        .fold(0.0, larger)
 }
 
 fn number<T: RealField + Copy>(x: T) -> f64 {
@@ -102,7 +102,7 @@ fn an_orientation_in_other_axes_is_the_same_turn() {
                 // C R Cᵀ, where the columns of C are the directions.
                 let c = transpose(&directions);
                 let expected = product(&c, &product(&rotation(axis, angle), &directions));
-                worst = worst.max(off(&matrix(axes.orientation_to_y_up(q)), &expected));
+                worst = larger(worst, off(&matrix(axes.orientation_to_y_up(q)), &expected));
                 let back = axes.orientation_from_y_up(axes.orientation_to_y_up(q));
                 assert_eq!(back, q, "{axes:?}");
             }
@@ -157,10 +157,10 @@ fn a_passive_matrix_is_the_transpose_of_the_active_one() {
             let (axis, angle) = axis_angle(&mut random);
             let active = rotation(axis, angle);
             let found = passive::matrix(quaternion::<T>(axis, angle));
-            worst = worst.max(off(&found, &transpose(&active)));
+            worst = larger(worst, off(&found, &transpose(&active)));
             let back = passive::orientation(found).expect("a rotation");
-            worst = worst.max(off(&matrix(back), &active));
-            worst = worst.max(number((back.norm() - T::one()).abs()));
+            worst = larger(worst, off(&matrix(back), &active));
+            worst = larger(worst, number((back.norm() - T::one()).abs()));
         }
         worst
     }
@@ -206,14 +206,14 @@ fn a_step_on_the_right_is_another_step_on_the_left() {
             // The world step is about the body's axis as it stands in the world.
             let in_world = side::step_in_world(q, step);
             let expected = rotation(apply(&turned, b), beta);
-            worst = worst.max(off(&matrix(in_world), &expected));
-            worst = worst.max(off(
-                &matrix(in_world * q),
-                &product(&turned, &rotation(b, beta)),
-            ));
+            worst = larger(worst, off(&matrix(in_world), &expected));
+            worst = larger(
+                worst,
+                off(&matrix(in_world * q), &product(&turned, &rotation(b, beta))),
+            );
             let in_body = side::step_in_body(q, step);
             let expected = rotation(apply(&transpose(&turned), b), beta);
-            worst = worst.max(off(&matrix(in_body), &expected));
+            worst = larger(worst, off(&matrix(in_body), &expected));
         }
         worst
     }

@@ -82,7 +82,15 @@ fn test_exists(path: &str) -> bool {
         return root().join(path).is_file();
     };
     let file: PathBuf = root().join(file);
-    file.is_file() && defines(&read(&file), name)
+    file.is_file() && tests(&read(&file), name)
+}
+
+/// Whether `text` has a function `name` that is run as a test.
+fn tests(text: &str, name: &str) -> bool {
+    text.split("#[test]").skip(1).any(|after| {
+        let function = after.split_once("fn ").map(|(_, function)| function);
+        function.is_some_and(|function| function.starts_with(&format!("{name}(")))
+    })
 }
 
 #[test]
@@ -100,6 +108,8 @@ fn every_item_and_every_test_that_the_documents_name_is_there() {
         } else if name.starts_with("tests/") || name.starts_with("emulator/tests/") {
             seen.1 += 1;
             assert!(test_exists(&name), "{document}: no test {name}");
+        } else if name.starts_with("examples/") {
+            assert!(root().join(&name).is_file(), "{document}: no {name}");
         }
     }
     assert!(seen.0 > 50 && seen.1 > 50, "only {seen:?} names were found");
@@ -144,6 +154,7 @@ fn what_is_not_there_is_found_out() {
         "tests/index.rs::what_is_not_there_is_found_out"
     ));
     assert!(!test_exists("tests/index.rs::what_is_not"));
+    assert!(!test_exists("tests/index.rs::test_exists"));
     assert!(!test_exists("tests/astrology.rs::anything"));
 }
 

@@ -44,17 +44,23 @@ impl<T: RealField + Copy> EulerAngles<T> {
         }
     }
 
-    /// Eq. 10: R = R_z(−θ_z) R_x(−θ_x) R_y(−θ_y), which takes vectors from **world to body**.
+    /// Eq. 10: R = R_z(−θ_z) R_x(−θ_x) R_y(−θ_y), which takes vectors from **world to body**. An angle
+    /// that is not finite counts as zero.
     pub fn world_to_body(&self) -> Rotation3<T> {
-        let about = |axis, angle: Angle<T>| Rotation3::from_axis_angle(&axis, -angle.rad());
+        let about = |axis, angle: Angle<T>| {
+            Rotation3::from_axis_angle(&axis, -angle.finite_or_zero().rad())
+        };
         about(Vector3::z_axis(), self.roll)
             * about(Vector3::x_axis(), self.pitch)
             * about(Vector3::y_axis(), self.yaw)
     }
 
-    /// The same orientation as the trackers give it, body to world.
+    /// The same orientation as the trackers give it, body to world. An angle that is not finite counts
+    /// as zero.
     pub fn orientation(&self) -> UnitQuaternion<T> {
-        let about = |axis, angle: Angle<T>| UnitQuaternion::from_axis_angle(&axis, angle.rad());
+        let about = |axis, angle: Angle<T>| {
+            UnitQuaternion::from_axis_angle(&axis, angle.finite_or_zero().rad())
+        };
         about(Vector3::y_axis(), self.yaw)
             * about(Vector3::x_axis(), self.pitch)
             * about(Vector3::z_axis(), self.roll)

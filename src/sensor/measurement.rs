@@ -142,10 +142,10 @@ fn solved<T: RealField + Copy>(n: &Matrix3<T>, c: Vector3<T>) -> Option<(Matrix3
     let inverse = n.try_inverse()?;
     let offset = -(inverse * c);
     // Rounding leaves a singular matrix a tiny determinant. What then comes out is no inverse.
-    let error = (n * inverse - Matrix3::identity()).amax();
+    let error = n * inverse - Matrix3::identity();
     // False for what is not a number.
-    let inverted = error < T::default_epsilon().sqrt();
-    (inverted && offset.iter().all(|c| c.is_finite())).then_some((inverse, offset))
+    let within = |e: &T| e.abs() < T::default_epsilon().sqrt();
+    (error.iter().all(within) && offset.iter().all(|c| c.is_finite())).then_some((inverse, offset))
 }
 
 /// Eq. 2 without its noise: a = a⁽ᵍ⁾ + a⁽ˡ⁾ in the body frame, for a body with this orientation

@@ -25,7 +25,7 @@ fn worst<T: RealField + Copy>() -> f64 {
             let (attitude, found) = both::<T>(&mut random);
             found.map(|m| largest_difference(&m, &attitude))
         })
-        .fold(0.0, f64::max)
+        .fold(0.0, larger)
 }
 
 #[test]

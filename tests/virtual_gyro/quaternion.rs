@@ -117,7 +117,7 @@ fn worst<T: RealField + Copy>() -> f64 {
             let found = rad(&to_angles(&of::<T>(angles), None));
             largest_difference(&r(found), &r(angles))
         })
-        .fold(0.0, f64::max)
+        .fold(0.0, larger)
 }
 
 #[test]

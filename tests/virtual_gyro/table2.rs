@@ -53,9 +53,9 @@ fn matrices() -> impl Iterator<Item = Matrix> {
 
 #[test]
 fn every_matrix_has_its_quaternion() {
-    let worst = matrices().map(|m| error::<f64>(&m)).fold(0.0, f64::max);
+    let worst = matrices().map(|m| error::<f64>(&m)).fold(0.0, larger);
     assert!(worst < 1e-14 * 10.0, "{worst:e}");
-    let worst = matrices().map(|m| error::<f32>(&m)).fold(0.0, f64::max);
+    let worst = matrices().map(|m| error::<f32>(&m)).fold(0.0, larger);
     assert!(worst < 1e-6, "{worst:e}");
 }
 
