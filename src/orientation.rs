@@ -66,17 +66,26 @@ pub struct TimeConstant<T>(Seconds<T>);
 pub const DEFAULT_TIME_CONSTANT: TimeConstant<f32> = TimeConstant(Seconds(7.6));
 
 impl<T: RealField + Copy> TimeConstant<T> {
-    /// τ.
+    /// τ, from zero (the accelerometer alone) to infinity (the gyro alone).
     pub fn new(time: Seconds<T>) -> Self {
         Self(time)
     }
 
-    /// From the notes' α, the weight of the gyro in one sample.
+    /// From the notes' α, the weight of the gyro in one sample: τ = αΔt/(1 − α). Below 0 it counts
+    /// as 0, above 1 as 1.
     pub fn from_gyro_weight(alpha: T, sample_period: Seconds<T>) -> Self {
+        // Put to its end before it is divided by: far outside, τ + Δt would be rounding.
+        let alpha = if alpha < T::zero() {
+            T::zero()
+        } else if alpha > T::one() {
+            T::one()
+        } else {
+            alpha
+        };
         Self(Seconds(sample_period.0 * alpha / (T::one() - alpha)))
     }
 
-    /// τ.
+    /// τ, as it was given: infinite for α = 1.
     pub fn time(self) -> Seconds<T> {
         self.0
     }
