@@ -8,12 +8,14 @@
 use crate::orientation::quaternion::{NotARotation, from_matrix};
 use nalgebra::{Matrix3, RealField, UnitQuaternion};
 
-/// The paper's R or M, reference to device, of an orientation, body to world, in the same axes.
+/// The paper's R (section 3.1) or M (eq. 7), reference to device, of an orientation, body to world,
+/// in the same axes: the transpose of eq. 33 of the notes. For unit length only, as that is.
 pub fn matrix<T: RealField + Copy>(q: UnitQuaternion<T>) -> Matrix3<T> {
     q.conjugate().to_rotation_matrix().into_inner()
 }
 
-/// The orientation, body to world, of the paper's R or M.
+/// The orientation, body to world, of the paper's R or M (table 2, by way of eq. 34 of the notes),
+/// with w ≥ 0.
 ///
 /// # Errors
 ///

@@ -35,7 +35,7 @@ use nalgebra::{Matrix3, Quaternion, RealField, Unit, UnitQuaternion, Vector3, co
 /// within.
 const ORTHONORMAL: f64 = 5e-3;
 
-/// A turn by an angle about an axis.
+/// A turn by an angle about an axis: θ and v of eq. 13, 35 and 36.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisAngle<T: RealField> {
     /// v, of unit length.
@@ -44,7 +44,7 @@ pub struct AxisAngle<T: RealField> {
     pub angle: Angle<T>,
 }
 
-/// Why a matrix is not one of a rotation.
+/// Why a matrix is not one of a rotation, so that eq. 34 does not hold for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotARotation {
     /// Its columns are not of unit length and at right angles (or not even numbers).
@@ -104,7 +104,7 @@ pub fn from_axis_angle<T: RealField + Copy>(
 /// The printed form goes the long way round for q_w < 0, is not a number where rounding makes
 /// |q_w| > 1, divides zero by zero at the identity, and of a small angle in single precision keeps
 /// half the digits, as every arc cosine does. Here θ/2 = atan2(‖(x, y, z)‖, w). The identity has
-/// no axis: its angle is 0, about x.
+/// no axis: its angle is 0, about x; and so are those of a quaternion that is zero or not finite.
 pub fn axis_angle<T: RealField + Copy>(q: UnitQuaternion<T>) -> AxisAngle<T> {
     let q = short_way(renormalised(q));
     let v = q.imag();
@@ -128,6 +128,10 @@ pub fn axis_angle<T: RealField + Copy>(q: UnitQuaternion<T>) -> AxisAngle<T> {
 /// The printed form divides by q_w, which is zero at every half turn. The four squares 4w², 4x²,
 /// 4y², 4z² can all be read off the diagonal; the largest is at least 1, and dividing by its root
 /// is always safe. The matrix may be off by rounding: what comes back is of unit length.
+///
+/// # Errors
+///
+/// [`NotARotation`] says what is wrong with a matrix that is further off, or not finite.
 pub fn from_matrix<T: RealField + Copy>(r: &Matrix3<T>) -> Result<UnitQuaternion<T>, NotARotation> {
     let deviation = r.transpose() * r - Matrix3::identity();
     // Not a number is not within either.
@@ -176,7 +180,7 @@ pub fn from_matrix<T: RealField + Copy>(r: &Matrix3<T>) -> Result<UnitQuaternion
 /// the same rotation); outside of that the nearer end, and `from` if it is not a number.
 ///
 /// Two orientations half a turn apart have no shorter way; the axis is then that of
-/// [`axis_angle`].
+/// [`axis_angle`]. One that is zero or not finite counts as the identity.
 pub fn slerp<T: RealField + Copy>(
     from: UnitQuaternion<T>,
     to: UnitQuaternion<T>,

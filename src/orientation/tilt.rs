@@ -17,8 +17,9 @@ pub fn correction<T: RealField + Copy>(force: SpecificForce<T>, fraction: T) -> 
     from_half_angle(phi_n(force.m_per_s2()) * (fraction * convert(0.5)))
 }
 
-/// Turns `orientation` about a horizontal axis until `force` (**body** frame) points up in the
-/// world: full correction, yaw kept.
+/// Turns `orientation` (body to world) about a horizontal axis until `force` (**body** frame) points
+/// up in the world: eq. 22 and 23, full correction, yaw kept. Nothing is turned for a force that is
+/// zero or not finite.
 pub fn level<T: RealField + Copy>(
     orientation: UnitQuaternion<T>,
     force: SpecificForce<T>,
@@ -30,7 +31,8 @@ pub fn level<T: RealField + Copy>(
 /// world.
 ///
 /// The product q a q⁻¹ is worked out with two cross products instead of two quaternion products:
-/// the same vector for half the arithmetic.
+/// the same vector for half the arithmetic. What is not finite stays so; [`correction`] then
+/// corrects nothing.
 pub fn in_world<T: RealField + Copy>(
     orientation: UnitQuaternion<T>,
     force: SpecificForce<T>,

@@ -26,7 +26,7 @@ pub enum GimbalLock {
     Resolve,
 }
 
-/// Roll φ, pitch θ and yaw ψ.
+/// Roll φ, pitch θ and yaw ψ of section 3.1: device against north, east and down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaitBryan<T> {
     /// φ about x, −π to π.
@@ -38,7 +38,7 @@ pub struct TaitBryan<T> {
 }
 
 impl<T: RealField + Copy> TaitBryan<T> {
-    /// φ, θ and ψ, as they come.
+    /// φ, θ and ψ in radians, as they come: neither wrapped nor checked.
     pub fn from_rad(roll: T, pitch: T, yaw: T) -> Self {
         Self {
             roll: Angle::from_rad(roll),

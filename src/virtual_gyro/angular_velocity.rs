@@ -8,7 +8,7 @@ use super::angles::TaitBryan;
 use crate::units::{AngularRate, Seconds};
 use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
 
-/// One angular velocity, seen from two frames.
+/// One angular velocity (section 3.5.5), seen from two frames, north-east-down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngularVelocity<T> {
     /// ω_d, about the device's axes.
