@@ -71,6 +71,12 @@ pub fn unit<T: RealField + Copy>(q: Quaternion<T>) -> Option<UnitQuaternion<T>> 
     finite_unit(q)
 }
 
+/// What claims to be of unit length, which `new_unchecked` lets anything, made so. The identity for
+/// zero and for what is not finite.
+pub(crate) fn trued<T: RealField + Copy>(q: UnitQuaternion<T>) -> UnitQuaternion<T> {
+    renormalised(q)
+}
+
 /// q⁻¹ = q*/‖q‖² of eq. 29, for a quaternion of any length. None for zero, for what is not
 /// finite, and where the inverse would be too large for a number.
 pub fn inverse<T: RealField + Copy>(q: Quaternion<T>) -> Option<Quaternion<T>> {

@@ -77,10 +77,11 @@ impl<T: RealField + Copy> TaitBryan<T> {
     /// R(φ, θ, ψ) = R_x(φ) R_y(θ) R_z(ψ) of section 3.1, reference to device.
     ///
     /// The paper calls these turns about the axes of the reference frame. They are turns about
-    /// the device's own axes, z first, then the new y, then the new x.
+    /// the device's own axes, z first, then the new y, then the new x. An angle that is not finite
+    /// counts as zero.
     pub fn matrix(&self) -> Rotation3<T> {
         // The paper's factors turn the frame, nalgebra's turn vectors.
-        let turn = |axis, angle: Angle<T>| Rotation3::from_axis_angle(&axis, -angle.rad());
+        let turn = |axis, angle: Angle<T>| Rotation3::from_axis_angle(&axis, -or_zero(angle));
         turn(Vector3::x_axis(), self.roll)
             * turn(Vector3::y_axis(), self.pitch)
             * turn(Vector3::z_axis(), self.yaw)
@@ -97,6 +98,11 @@ impl<T: RealField + Copy> TaitBryan<T> {
         let roll = kept_roll(previous);
         Self::from_rad(roll, T::frac_pi_2(), wrapped(roll - difference))
     }
+}
+
+pub(super) fn or_zero<T: RealField + Copy>(angle: Angle<T>) -> T {
+    let rad = angle.rad();
+    if rad.is_finite() { rad } else { T::zero() }
 }
 
 fn kept_roll<T: RealField + Copy>(previous: Option<TaitBryan<T>>) -> T {
