@@ -52,8 +52,8 @@ mod rotation;
 /// eq. 24, that α “defines how aggressively tilt correction is being applied”, describes 1 − α:
 /// with α = 1 there is none.)
 ///
-/// A weight outside 0 to 1 has no meaning, and one that is not a number none either: the filter
-/// takes the nearer end, or believes the gyro.
+/// A weight outside 0 to 1 has no meaning, and one that is not a number none either: the nearer end
+/// is taken for the first, the gyro alone for the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeConstant<T>(Seconds<T>);
 
@@ -66,26 +66,22 @@ pub struct TimeConstant<T>(Seconds<T>);
 pub const DEFAULT_TIME_CONSTANT: TimeConstant<f32> = TimeConstant(Seconds(7.6));
 
 impl<T: RealField + Copy> TimeConstant<T> {
-    /// τ, from zero (the accelerometer alone) to infinity (the gyro alone).
+    /// τ.
     pub fn new(time: Seconds<T>) -> Self {
         Self(time)
     }
 
-    /// From the notes' α, the weight of the gyro in one sample: τ = αΔt/(1 − α). Below 0 it counts
-    /// as 0, above 1 as 1.
+    /// From the notes' α, the weight of the gyro in one sample. Infinite for the gyro alone, α = 1.
     pub fn from_gyro_weight(alpha: T, sample_period: Seconds<T>) -> Self {
-        // Put to its end before it is divided by: far outside, τ + Δt would be rounding.
-        let alpha = if alpha < T::zero() {
-            T::zero()
-        } else if alpha > T::one() {
-            T::one()
+        // Not a number is not below one either.
+        Self(Seconds(if alpha < T::one() {
+            sample_period.0 * alpha.max(T::zero()) / (T::one() - alpha)
         } else {
-            alpha
-        };
-        Self(Seconds(sample_period.0 * alpha / (T::one() - alpha)))
+            T::one() / T::zero()
+        }))
     }
 
-    /// τ, as it was given: infinite for α = 1.
+    /// τ.
     pub fn time(self) -> Seconds<T> {
         self.0
     }

@@ -48,6 +48,15 @@ impl<T: RealField + Copy> Angle<T> {
     pub fn degrees(self) -> T {
         self.0 * convert(DEGREES_PER_RADIAN)
     }
+
+    /// The same angle; zero if it is not finite.
+    pub(crate) fn finite_or_zero(self) -> Self {
+        Self(if self.0.is_finite() {
+            self.0
+        } else {
+            T::zero()
+        })
+    }
 }
 
 /// How fast something turns about each of three axes, kept in rad/s: ω of the course notes' eq. 1

@@ -124,15 +124,6 @@ fn force_and_field_together_show_the_whole_error() {
 }
 
 #[test]
-fn north_is_where_the_compass_points() {
-    // A declination of 10° to the east, a level head that faces the pole: 10° off by the compass.
-    let magnetic = rotation(Y, -10_f64.to_radians());
-    let seen = field(apply(&magnetic, earth(60.0)));
-    let d = error::<f64>(UnitQuaternion::identity(), force([0.0, G, 0.0]), Some(seen));
-    assert!(largest_difference(&matrix(&d), &magnetic) < 1e-9);
-}
-
-#[test]
 fn a_share_of_the_error_is_taken_out_along_its_own_axis() {
     let mut random = Random(52);
     for _ in 0..20_000 {

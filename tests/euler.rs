@@ -133,42 +133,6 @@ fn at_gimbal_lock_yaw_has_the_turn_and_roll_is_zero() {
 }
 
 #[test]
-fn only_the_direction_of_a_quaternion_has_angles() {
-    fn worst<T: RealField + Copy>(decades: f64) -> f64 {
-        let (mut random, mut worst) = (Random(3), 0.0_f64);
-        for _ in 0..100_000 {
-            let q = [(); 4].map(|()| random.between(-1.0, 1.0));
-            if q.iter().map(|c| c * c).sum::<f64>() < 0.01 {
-                continue;
-            }
-            let length = 10.0_f64.powf(random.between(-decades, decades));
-            let [w, x, y, z] = q.map(|c| convert(c * length));
-            let found =
-                EulerAngles::<T>::of(UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)));
-            let [w, x, y, z] = q;
-            let unit = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
-            worst = worst.max(degrees_between(&matrix(found), &columns(unit)).to_radians());
-        }
-        worst
-    }
-    assert!(worst::<f64>(300.0) < 1e-9);
-    assert!(worst::<f32>(30.0) < 1e-5);
-}
-
-#[test]
-fn angles_that_are_none_count_as_zero_and_an_eye_that_is_nowhere_sees_nothing() {
-    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let (some, none) = (angles::<f64>(0.3, bad, -0.4), angles::<f64>(0.3, 0.0, -0.4));
-        assert_eq!(some.orientation(), none.orientation());
-        assert_eq!(some.world_to_body(), none.world_to_body());
-        assert_eq!(some.rates(AngularRate::zero()), None);
-        for eye in [[bad, 0.0, 0.0], [0.0, 1.0, bad], [f64::MAX; 3]] {
-            assert_eq!(none.view_matrix(Point3::from(eye)), None, "{eye:?}");
-        }
-    }
-}
-
-#[test]
 fn the_rates_of_the_angles_integrate_to_the_turn_of_the_body() {
     // Runge and Kutta on the rates against the matrix exponential.
     let rate = [0.5, -0.4, 0.7];
@@ -456,6 +420,42 @@ fn no_input_makes_the_lectures_trackers_anything_but_angles() {
                     }
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn only_the_direction_of_a_quaternion_has_angles() {
+    fn worst<T: RealField + Copy>(decades: f64) -> f64 {
+        let (mut random, mut worst) = (Random(3), 0.0_f64);
+        for _ in 0..100_000 {
+            let q = [(); 4].map(|()| random.between(-1.0, 1.0));
+            if q.iter().map(|c| c * c).sum::<f64>() < 0.01 {
+                continue;
+            }
+            let length = 10.0_f64.powf(random.between(-decades, decades));
+            let [w, x, y, z] = q.map(|c| convert(c * length));
+            let found =
+                EulerAngles::<T>::of(UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)));
+            let [w, x, y, z] = q;
+            let unit = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+            worst = worst.max(degrees_between(&matrix(found), &columns(unit)).to_radians());
+        }
+        worst
+    }
+    assert!(worst::<f64>(300.0) < 1e-9);
+    assert!(worst::<f32>(30.0) < 1e-5);
+}
+
+#[test]
+fn angles_that_are_none_count_as_zero_and_an_eye_that_is_nowhere_sees_nothing() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let (some, none) = (angles::<f64>(0.3, bad, -0.4), angles::<f64>(0.3, 0.0, -0.4));
+        assert_eq!(some.orientation(), none.orientation());
+        assert_eq!(some.world_to_body(), none.world_to_body());
+        assert_eq!(some.rates(AngularRate::zero()), None);
+        for eye in [[bad, 0.0, 0.0], [0.0, 1.0, bad], [f64::MAX; 3]] {
+            assert_eq!(none.view_matrix(Point3::from(eye)), None, "{eye:?}");
         }
     }
 }

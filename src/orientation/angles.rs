@@ -34,12 +34,8 @@ impl<T: RealField + Copy> PitchRoll<T> {
     /// Eq. 10: the direction the accelerometer of a resting board reads, body frame, of length 1.
     /// Yaw has no part in it. An angle that is not finite counts as zero.
     pub fn up_in_body(&self) -> Vector3<T> {
-        let sin_cos = |angle: Angle<T>| {
-            let rad = angle.rad();
-            if rad.is_finite() { rad } else { T::zero() }.sin_cos()
-        };
-        let (sin_x, cos_x) = sin_cos(self.pitch);
-        let (sin_z, cos_z) = sin_cos(self.roll);
+        let (sin_x, cos_x) = self.pitch.finite_or_zero().rad().sin_cos();
+        let (sin_z, cos_z) = self.roll.finite_or_zero().rad().sin_cos();
         Vector3::new(cos_x * sin_z, cos_x * cos_z, -sin_x)
     }
 }

@@ -40,10 +40,8 @@ impl<T: RealField + Copy> Complementary<T> {
     ///
     /// The tilt is that of q_ω, after the gyro's step: correcting one orientation by the tilt of
     /// another would leave a whole step behind. The correction stands on the left, because its
-    /// axis is in the world.
-    ///
-    /// The reading is in the body frame, the orientation body to world. A rate that is not finite
-    /// turns nothing, and a force that is zero or not finite corrects nothing.
+    /// axis is in the world. A rate that is not finite turns nothing, and a force that has no
+    /// direction (free fall, or not finite) corrects nothing.
     pub fn update(&mut self, reading: &Reading<T>) -> UnitQuaternion<T> {
         let Derived {
             sample_period,

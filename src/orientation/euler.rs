@@ -13,8 +13,6 @@ pub mod lecture;
 
 /// Yaw about y, then pitch about x, then roll about z, each about the axes the turn before has left
 /// the body with. Body to world it is R_y(θ_y) R_x(θ_x) R_z(θ_z), the inverse of eq. 10.
-///
-/// Any angle will do. One that is not finite counts as zero in the rotations and views made of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EulerAngles<T> {
     /// θ_y about y: turning to the left is positive.
@@ -47,17 +45,23 @@ impl<T: RealField + Copy> EulerAngles<T> {
         }
     }
 
-    /// Eq. 10: R = R_z(−θ_z) R_x(−θ_x) R_y(−θ_y), which takes vectors from **world to body**.
+    /// Eq. 10: R = R_z(−θ_z) R_x(−θ_x) R_y(−θ_y), which takes vectors from **world to body**. An angle
+    /// that is not finite counts as zero.
     pub fn world_to_body(&self) -> Rotation3<T> {
-        let about = |axis, angle: Angle<T>| Rotation3::from_axis_angle(&axis, -or_zero(angle));
+        let about = |axis, angle: Angle<T>| {
+            Rotation3::from_axis_angle(&axis, -angle.finite_or_zero().rad())
+        };
         about(Vector3::z_axis(), self.roll)
             * about(Vector3::x_axis(), self.pitch)
             * about(Vector3::y_axis(), self.yaw)
     }
 
-    /// The same orientation as the trackers give it, body to world.
+    /// The same orientation as the trackers give it, body to world. An angle that is not finite counts
+    /// as zero.
     pub fn orientation(&self) -> UnitQuaternion<T> {
-        let about = |axis, angle: Angle<T>| UnitQuaternion::from_axis_angle(&axis, or_zero(angle));
+        let about = |axis, angle: Angle<T>| {
+            UnitQuaternion::from_axis_angle(&axis, angle.finite_or_zero().rad())
+        };
         about(Vector3::y_axis(), self.yaw)
             * about(Vector3::x_axis(), self.pitch)
             * about(Vector3::z_axis(), self.roll)
@@ -139,11 +143,6 @@ impl<T: RealField + Copy> EulerAngles<T> {
             .all(|element| element.is_finite())
             .then_some(view)
     }
-}
-
-fn or_zero<T: RealField + Copy>(angle: Angle<T>) -> T {
-    let rad = angle.rad();
-    if rad.is_finite() { rad } else { T::zero() }
 }
 
 /// v_clip = M_proj M_view M_model v (lectures, “from lecture 2”): a vertex in the model's frame, in

@@ -9,10 +9,8 @@ use crate::units::{AngularRate, Seconds};
 use nalgebra::{RealField, UnitQuaternion, convert};
 
 /// q_Δ of eq. 17: the turn from this sample's body frame to that of the last one, for a body that
-/// turned at `rate` (body frame) for the whole of the period.
-///
-/// A rate of zero needs no care, since nothing is divided by its length. The identity if the turn
-/// is not finite.
+/// turned at `rate` (body frame) for the whole of the period. The identity where eq. 17 divides zero
+/// by zero, at no rate, and for a turn that is not finite.
 pub fn step<T: RealField + Copy>(rate: AngularRate<T>, period: Seconds<T>) -> UnitQuaternion<T> {
     from_half_angle(rate.rad_per_s() * (period.0 * convert(0.5)))
 }
@@ -39,8 +37,8 @@ impl<T: RealField + Copy> DeadReckoning<T> {
         self.orientation = renormalised(orientation);
     }
 
-    /// Eq. 18: q ← q q_Δ. On the right, because q_Δ is a turn in the body's own axes. A rate (body
-    /// frame) that is not finite turns nothing.
+    /// Eq. 18: q ← q q_Δ. On the right, because q_Δ is a turn in the body's own axes. A rate that is
+    /// not finite turns nothing.
     pub fn update(&mut self, reading: &Reading<T>) -> UnitQuaternion<T> {
         let q_delta = step(reading.rate(), self.sample_period);
         self.orientation = renormalised(self.orientation * q_delta);

@@ -110,7 +110,7 @@ pub fn from_axis_angle<T: RealField + Copy>(
 /// The printed form goes the long way round for q_w < 0, is not a number where rounding makes
 /// |q_w| > 1, divides zero by zero at the identity, and of a small angle in single precision keeps
 /// half the digits, as every arc cosine does. Here θ/2 = atan2(‖(x, y, z)‖, w). The identity has
-/// no axis: its angle is 0, about x; and so are those of a quaternion that is zero or not finite.
+/// no axis: its angle is 0, about x; and so is that of what is zero or not finite.
 pub fn axis_angle<T: RealField + Copy>(q: UnitQuaternion<T>) -> AxisAngle<T> {
     let q = short_way(renormalised(q));
     let v = q.imag();

@@ -17,9 +17,8 @@ pub fn correction<T: RealField + Copy>(force: SpecificForce<T>, fraction: T) -> 
     from_half_angle(phi_n(force.m_per_s2()) * (fraction * convert(0.5)))
 }
 
-/// Turns `orientation` (body to world) about a horizontal axis until `force` (**body** frame) points
-/// up in the world: eq. 22 and 23, full correction, yaw kept. Nothing is turned for a force that is
-/// zero or not finite.
+/// Turns `orientation` about a horizontal axis until `force` (**body** frame) points up in the
+/// world: full correction, yaw kept.
 pub fn level<T: RealField + Copy>(
     orientation: UnitQuaternion<T>,
     force: SpecificForce<T>,

@@ -81,7 +81,7 @@ impl<T: RealField + Copy> TaitBryan<T> {
     /// counts as zero.
     pub fn matrix(&self) -> Rotation3<T> {
         // The paper's factors turn the frame, nalgebra's turn vectors.
-        let turn = |axis, angle: Angle<T>| Rotation3::from_axis_angle(&axis, -or_zero(angle));
+        let turn = |axis, angle: Angle<T>| Rotation3::from_axis_angle(&axis, -angle.finite_or_zero().rad());
         turn(Vector3::x_axis(), self.roll)
             * turn(Vector3::y_axis(), self.pitch)
             * turn(Vector3::z_axis(), self.yaw)
@@ -98,11 +98,6 @@ impl<T: RealField + Copy> TaitBryan<T> {
         let roll = kept_roll(previous);
         Self::from_rad(roll, T::frac_pi_2(), wrapped(roll - difference))
     }
-}
-
-pub(super) fn or_zero<T: RealField + Copy>(angle: Angle<T>) -> T {
-    let rad = angle.rad();
-    if rad.is_finite() { rad } else { T::zero() }
 }
 
 fn kept_roll<T: RealField + Copy>(previous: Option<TaitBryan<T>>) -> T {

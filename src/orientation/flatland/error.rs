@@ -16,8 +16,7 @@ pub fn gyro_drift<T: RealField + Copy>(bias: AngularRate<T>, time: Seconds<T>) -
 
 /// Of eq. 9 in the long run, from a bias left in the readings: α Δt b/(1 − α) = τ b.
 ///
-/// “No drift” is not “no error”: the angle stands still, but off by this. With α = 1 nothing holds
-/// it, and there is no long run: not finite, see [`gyro_drift`].
+/// “No drift” is not “no error”: the angle stands still, but off by this.
 pub fn fused_offset<T: RealField + Copy>(
     bias: AngularRate<T>,
     time_constant: TimeConstant<T>,
