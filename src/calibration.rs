@@ -3,6 +3,7 @@
 //! provably lay still, the mean of the gyro *is* the bias. The course's firmware takes the mean
 //! without looking; hold the board in the hand at start-up and it drifts for the whole session.
 
+use crate::sensor::measurement::Calibration;
 use crate::sensor::{Ranges, RawSample, Sample};
 use crate::units::{AngularRate, SpecificForce};
 use nalgebra::{RealField, Vector3};
@@ -218,8 +219,8 @@ impl<T: RealField + Copy> GyroBias<T> {
     }
 }
 
-/// A corrected sample, body frame: what the estimators take. Only [`GyroBias::correct`] makes
-/// one, so that an uncalibrated sample cannot reach them by mistake.
+/// A corrected sample, body frame: what the estimators take. Only [`GyroBias::correct`] and
+/// [`Reading::calibrated`] make one, so that an uncalibrated sample cannot reach them by mistake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading<T> {
     rate: AngularRate<T>,
@@ -227,6 +228,18 @@ pub struct Reading<T> {
 }
 
 impl<T: RealField + Copy> Reading<T> {
+    /// Each triad by its own A x + b (001), as a calibration on the bench gives them.
+    pub fn calibrated(
+        sample: Sample<T>,
+        gyro: &Calibration<AngularRate<T>>,
+        accelerometer: &Calibration<SpecificForce<T>>,
+    ) -> Self {
+        Self {
+            rate: gyro.corrected(sample.rate),
+            force: accelerometer.corrected(sample.force),
+        }
+    }
+
     /// Angular rate of the body, bias removed.
     pub fn rate(&self) -> AngularRate<T> {
         self.rate

@@ -68,6 +68,9 @@ pub mod calibration;
 /// The estimators of the course notes, one per file.
 pub mod orientation;
 
+/// The default estimator: tilt, bias and heading, level with the best published filter.
+pub mod fusion;
+
 /// A gyro made of an accelerometer and a magnetometer.
 pub mod virtual_gyro;
 

@@ -116,6 +116,11 @@ fn every_item_and_every_test_that_the_documents_name_is_there() {
         if name.starts_with("vrduino::") {
             seen.0 += 1;
             assert!(item_exists(&name), "{document}: no item {name}");
+        } else if name.starts_with("examples/") {
+            assert!(
+                root().join(&name).is_file(),
+                "{document}: no example {name}"
+            );
         } else if name.starts_with("tests/") || name.starts_with("emulator/tests/") {
             seen.1 += 1;
             assert!(test_exists(&name), "{document}: no test {name}");

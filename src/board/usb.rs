@@ -4,10 +4,9 @@
 //! does the rest. A line that finds the queue full is dropped and counted.
 
 mod buffers;
-
 mod bus;
-
 mod descriptors;
+mod endpoints;
 
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};

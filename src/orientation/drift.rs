@@ -10,7 +10,8 @@
 //! * Its tilt axis ŷ × u turns ŷ into u, not u towards ŷ. That is right for an error, which its
 //!   −α then takes back.
 //!
-//! The post's calibration Aω + b comes before: a [`Reading`] is corrected already.
+//! The post's calibration Aω + b comes before: [`Reading::calibrated`]. The field wants the same, by
+//! [`Calibration::corrected`](crate::sensor::measurement::Calibration::corrected).
 
 use super::quaternion::{axis_angle, from_axis_angle};
 use super::rotation::renormalised;

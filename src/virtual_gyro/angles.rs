@@ -81,7 +81,9 @@ impl<T: RealField + Copy> TaitBryan<T> {
     /// counts as zero.
     pub fn matrix(&self) -> Rotation3<T> {
         // The paper's factors turn the frame, nalgebra's turn vectors.
-        let turn = |axis, angle: Angle<T>| Rotation3::from_axis_angle(&axis, -angle.finite_or_zero().rad());
+        let turn = |axis, angle: Angle<T>| {
+            Rotation3::from_axis_angle(&axis, -angle.finite_or_zero().rad())
+        };
         turn(Vector3::x_axis(), self.roll)
             * turn(Vector3::y_axis(), self.pitch)
             * turn(Vector3::z_axis(), self.yaw)

@@ -14,9 +14,12 @@ use nalgebra::{Quaternion, RealField, Rotation3, UnitQuaternion, Vector3, conver
 /// printed one, q_φ q_θ q_ψ, is neither this attitude nor its inverse. An angle that is not finite
 /// counts as zero.
 pub fn from_angles<T: RealField + Copy>(angles: &TaitBryan<T>) -> UnitQuaternion<T> {
-    let q_phi = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angles.roll.finite_or_zero().rad());
-    let q_theta = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angles.pitch.finite_or_zero().rad());
-    let q_psi = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angles.yaw.finite_or_zero().rad());
+    let q_phi =
+        UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angles.roll.finite_or_zero().rad());
+    let q_theta =
+        UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angles.pitch.finite_or_zero().rad());
+    let q_psi =
+        UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angles.yaw.finite_or_zero().rad());
     q_psi * q_theta * q_phi
 }
 

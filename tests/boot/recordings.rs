@@ -126,19 +126,19 @@ fn up_in_body(body_to_world: [f64; 4]) -> [f64; 3] {
 }
 
 #[test]
-#[ignore = "needs VRDUINO_MOTIONS"]
+#[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn follows_a_recorded_slow_rotation() {
     follows_recording("02_undisturbed_slow_rotation_B.imub");
 }
 
 #[test]
-#[ignore = "needs VRDUINO_MOTIONS"]
+#[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn follows_a_recorded_fast_rotation() {
     follows_recording("06_undisturbed_fast_rotation_A.imub");
 }
 
 #[test]
-#[ignore = "needs VRDUINO_MOTIONS"]
+#[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn follows_a_recorded_fast_translation() {
     follows_recording("15_undisturbed_fast_translation_A.imub");
 }

@@ -129,6 +129,16 @@ fn the_angles_of_a_quaternion_rebuild_it_everywhere() {
 }
 
 #[test]
+fn a_tilt_of_a_ten_thousandth_is_resolved_by_the_second_method_in_single_precision() {
+    for (phi, theta) in [(1e-4, 0.0), (0.0, 1e-4), (-1e-4, 1e-4), (3e-4, -1e-4)] {
+        let seen = directions::<f32>(&r([phi, theta, 0.7]), 1.1);
+        let q = from_matrix(&matrix::from_gravity(&seen)).unwrap();
+        let found = rad(&to_angles(&q, None));
+        assert!(apart(found, [phi, theta, 0.7]) < 5e-7, "{found:?}");
+    }
+}
+
+#[test]
 fn the_printed_arc_sine_fails_next_to_the_singularities() {
     // Rounding takes its argument beyond 1, or loses half of the digits.
     let (mut undefined, mut off) = (0, 0.0_f64);

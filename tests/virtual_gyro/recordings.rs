@@ -135,7 +135,7 @@ fn follows(name: &str) -> Score {
 }
 
 #[test]
-#[ignore = "needs VRDUINO_MOTIONS"]
+#[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn follows_the_gyro_of_a_recorded_slow_rotation() {
     let score = follows("02_undisturbed_slow_rotation_B.imub");
     assert!(score.correlation > 0.85, "{score:?}");
@@ -144,7 +144,7 @@ fn follows_the_gyro_of_a_recorded_slow_rotation() {
 }
 
 #[test]
-#[ignore = "needs VRDUINO_MOTIONS"]
+#[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn follows_the_gyro_of_a_recorded_fast_rotation() {
     let score = follows("06_undisturbed_fast_rotation_A.imub");
     assert!(score.correlation > 0.65, "{score:?}");
@@ -153,7 +153,7 @@ fn follows_the_gyro_of_a_recorded_fast_rotation() {
 }
 
 #[test]
-#[ignore = "needs VRDUINO_MOTIONS"]
+#[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn a_recorded_fast_translation_is_beyond_it() {
     // The device is accelerated by more than 1 g half of the time: nothing tells gravity from that.
     let score = follows("15_undisturbed_fast_translation_A.imub");

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use vrduino_emulator::board::{Board, Setup};
+use vrduino_emulator::cpu::Pace;
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::turns::Turns;
 use vrduino_emulator::time::{self, MILLISECOND, SECOND};
@@ -18,11 +19,12 @@ pub struct Bench {
 impl Bench {
     pub fn new(elf: &Path) -> Bench {
         let image = Image::open(elf).expect("the emulator accepts the sketch");
-        Bench::with(image, &[])
+        Bench::with(image, Pace::default(), &[])
     }
 
-    fn with(image: Image, allowed: &[Trap]) -> Bench {
-        let still = Setup::new(Box::new(Turns::new(1e6, 0.0))).allowing(allowed);
+    fn with(image: Image, pace: Pace, allowed: &[Trap]) -> Bench {
+        let mut still = Setup::new(Box::new(Turns::new(1e6, 0.0))).allowing(allowed);
+        still.pace = pace;
         Bench {
             image: image.clone(),
             board: Board::new(image, still),
@@ -32,7 +34,12 @@ impl Bench {
 
     /// A fresh board with the same sketch, that goes on after some traps.
     pub fn again(&self, allowed: &[Trap]) -> Bench {
-        Bench::with(self.image.clone(), allowed)
+        self.at_pace(Pace::default(), allowed)
+    }
+
+    /// The same, by this end of the cycle band.
+    pub fn at_pace(&self, pace: Pace, allowed: &[Trap]) -> Bench {
+        Bench::with(self.image.clone(), pace, allowed)
     }
 
     /// Why the board stops after `key` was typed into a sketch that is ready.

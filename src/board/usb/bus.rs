@@ -22,6 +22,7 @@ use usb_device::endpoint::{EndpointAddress, EndpointType};
 use usb_device::{Result, UsbDirection, UsbError};
 
 use super::buffers::{self, ENDPOINTS, PACKET, buffer, descriptor};
+use super::endpoints::{Endpoints, Receive, Transmit};
 
 /// ISTAT flags, cleared by writing them as 1.
 mod flag {
@@ -53,39 +54,10 @@ const RECEIVE: u8 = 1 << 3;
 /// No SETUP on this endpoint.
 const NO_CONTROL: u8 = 1 << 4;
 
-/// One endpoint towards the host.
-#[derive(Clone, Copy, Default)]
-struct Transmit {
-    size: usize,
-    bank: usize,
-    data1: bool,
-    busy: bool,
-    stalled: bool,
-}
-
-/// One endpoint from the host.
-#[derive(Clone, Copy, Default)]
-struct Receive {
-    size: usize,
-    /// The bank that is read next.
-    bank: usize,
-    /// How many banks hold a packet.
-    filled: u8,
-    /// The toggle each bank is given with: neighbours differ.
-    data1: [bool; 2],
-    stalled: bool,
-}
-
-#[derive(Clone, Copy, Default)]
-struct State {
-    transmit: [Transmit; ENDPOINTS],
-    receive: [Receive; ENDPOINTS],
-}
-
 /// The controller.
 pub struct Bus {
     // Never contended: all of this runs in the USB interrupt. `usb-device` asks for `Sync` all the same.
-    state: Mutex<RefCell<State>>,
+    state: Mutex<RefCell<Endpoints>>,
 }
 
 fn registers() -> &'static pac::usb0::RegisterBlock {
@@ -104,11 +76,11 @@ impl Bus {
             .modify(|_, w| w.usbsrc().set_bit().pllfllsel().set_bit());
         sim.scgc4().modify(|_, w| w.usbotg().enabled());
         Bus {
-            state: Mutex::new(RefCell::new(State::default())),
+            state: Mutex::new(RefCell::new(Endpoints::default())),
         }
     }
 
-    fn with<T>(&self, work: impl FnOnce(&mut State) -> T) -> T {
+    fn with<T>(&self, work: impl FnOnce(&mut Endpoints) -> T) -> T {
         critical_section::with(|cs| work(&mut self.state.borrow_ref_mut(cs)))
     }
 
@@ -215,22 +187,6 @@ impl Bus {
     }
 }
 
-impl State {
-    /// Makes the next packet of a data endpoint DATA0, in both directions.
-    fn restart_toggles(&mut self, number: usize) {
-        let transmit = &mut self.transmit[number];
-        transmit.data1 = false;
-        descriptor(number, true, transmit.bank).set_toggle(false);
-        let receive = &mut self.receive[number];
-        let next = (receive.bank + usize::from(receive.filled)) & 1;
-        receive.data1[next] = false;
-        receive.data1[next ^ 1] = true;
-        for bank in [0, 1] {
-            descriptor(number, false, bank).set_toggle(receive.data1[bank]);
-        }
-    }
-}
-
 impl UsbBus for Bus {
     fn alloc_ep(
         &mut self,
@@ -245,7 +201,8 @@ impl UsbBus for Bus {
             return Err(UsbError::Unsupported);
         }
         self.with(|state| {
-            let used = |state: &State, n: usize| state.transmit[n].size + state.receive[n].size > 0;
+            let used =
+                |state: &Endpoints, n: usize| state.transmit[n].size + state.receive[n].size > 0;
             let number = match (address, kind) {
                 (Some(address), _) => address.index(),
                 (None, EndpointType::Control) => 0,

@@ -1,0 +1,189 @@
+//! The estimator that is streamed by default: a complementary filter of second order for tilt, the
+//! gyro's bias kept up while it runs, and a heading by compass that never touches the tilt.
+//!
+//! | file | does |
+//! |---|---|
+//! | `parameters` | what a person chooses, as times in seconds |
+//! | `inclination` | gyro and accelerometer to a tilt without drift, heading from the gyro alone |
+//! | `rest` | sees when nothing moves |
+//! | `bias` | what the gyro reads when nothing turns: a mean at rest, an integral on the move |
+//! | `disturbance` | tells the field of the earth from that of a magnet |
+//! | `heading` | a turn about the vertical that brings north to north |
+//!
+//! Where the notes' filter ([`Complementary`]) turns the *direction* of the force towards up, this
+//! one averages the force itself, in the world, over a few seconds: accelerations cancel over such a
+//! time, but only if each has entered with its size. That is the idea of VQF (D. Laidig and
+//! T. Seel, “VQF: Highly accurate IMU orientation estimation with bias estimation and magnetic
+//! disturbance rejection”, Information Fusion 91, 2023) with two numbers of state in the place of a
+//! filter in an inertial frame: no root, no division and no trigonometric function in a sample.
+//!
+//! World: y up, −z to magnetic north once a compass has had its say, −z ahead at the start without.
+//!
+//! [`Complementary`]: crate::orientation::complementary::Complementary
+
+mod bias;
+mod disturbance;
+mod heading;
+mod inclination;
+mod parameters;
+mod rest;
+
+pub use bias::{Bias, Source};
+pub use disturbance::FieldVerdict;
+pub use parameters::{Parameters, Rates};
+pub use rest::Motion;
+
+use crate::orientation::gyro;
+use crate::sensor::Sample;
+use crate::units::{AngularRate, MagneticField, Seconds, SpecificForce};
+use heading::Heading;
+use inclination::Inclination;
+use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
+use rest::Rest;
+
+/// The default estimator. Generic over the scalar; what it does in `f64` is the definition that
+/// other forms of it are held against.
+#[derive(Clone, Debug)]
+pub struct Fusion<T: RealField> {
+    sample_period: Seconds<T>,
+    lead: Seconds<T>,
+    inclination: Inclination<T>,
+    rest: Rest<T>,
+    bias: Bias<T>,
+    heading: Heading<T>,
+    /// The rate of the last sample, without bias: the lead goes on with it.
+    rate: AngularRate<T>,
+    started: bool,
+    refused: u32,
+}
+
+impl<T: RealField + Copy> Fusion<T> {
+    /// Starts with the first sample: level by its force, heading ahead.
+    pub fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {
+        Self {
+            sample_period: rates.sample,
+            lead: parameters.lead,
+            inclination: Inclination::new(parameters, rates.sample),
+            rest: Rest::new(parameters, rates.sample),
+            bias: Bias::new(parameters, rates),
+            heading: Heading::new(parameters, rates.field),
+            rate: AngularRate::zero(),
+            started: false,
+            refused: 0,
+        }
+    }
+
+    /// One sample with the gyro's bias still in it, body frame; every so often with a field,
+    /// corrected for iron and in the body's axes.
+    ///
+    /// A sample that is not finite, or beyond what any sensor of this kind reports (200 rad/s,
+    /// 1000 m/s²), is no measurement: the orientation stays as it is and [`Self::refused`] counts. A
+    /// field that is none (zero, not finite, beyond 100 mT) leaves the heading to the gyro.
+    pub fn update(
+        &mut self,
+        sample: &Sample<T>,
+        field: Option<MagneticField<T>>,
+    ) -> UnitQuaternion<T> {
+        let (rate, force) = (sample.rate.rad_per_s(), sample.force.m_per_s2());
+        if !within(rate, 200.0) || !within(force, 1000.0) {
+            self.refused = self.refused.saturating_add(1);
+            return self.orientation();
+        }
+        if !self.started {
+            self.inclination.level(sample.force);
+            self.started = true;
+        }
+        let motion = self.rest.update(rate, force, self.bias.at_rest());
+        if let Motion::Still { samples } = motion {
+            self.bias.rests(self.rest.mean_rate(), samples);
+        } else {
+            self.bias.moves();
+        }
+        self.rate = AngularRate::from_rad_per_s(rate - self.bias.rad_per_s());
+        let tilt_error = self.inclination.update(self.rate, sample.force);
+        let heading_error = field
+            .map(MagneticField::microtesla)
+            .filter(|&field| within(field, 100_000.0))
+            .and_then(|field| {
+                let turning = self.rate.rad_per_s();
+                self.heading
+                    .update(self.inclination.in_world(field), turning)
+            });
+        if !matches!(motion, Motion::Still { .. }) {
+            let error = self.bias.integrals(tilt_error, heading_error);
+            self.bias.shift(self.inclination.in_body(error));
+        }
+        self.orientation()
+    }
+
+    /// Body to world, led by [`Parameters::lead`]; the identity before the first sample.
+    pub fn orientation(&self) -> UnitQuaternion<T> {
+        let q = self.heading.turn() * self.inclination.orientation();
+        if self.lead.0.is_zero() {
+            return q;
+        }
+        q * gyro::step(self.rate, self.lead)
+    }
+
+    /// The same without a compass: heading from the gyro alone, so that no magnet turns the picture.
+    pub fn orientation_without_compass(&self) -> UnitQuaternion<T> {
+        self.inclination.orientation()
+    }
+
+    /// Starts again with heading 0 and the tilt this force (body frame) shows. The bias is kept.
+    pub fn reset(&mut self, force: SpecificForce<T>) {
+        self.inclination.restart(force);
+        self.heading.restart();
+        self.started = true;
+    }
+
+    /// Takes the tilt this force (body frame) shows at once and keeps the heading: after a gap.
+    pub fn level(&mut self, force: SpecificForce<T>) {
+        self.inclination.level(force);
+        self.rest.restart();
+    }
+
+    /// Takes this rate (body frame) for the gyro's bias, as one measured at rest.
+    pub fn set_bias(&mut self, at_rest: AngularRate<T>) {
+        self.bias.set(at_rest);
+    }
+
+    /// What the gyro reads when nothing turns, and how that is known.
+    pub fn bias(&self) -> &Bias<T> {
+        &self.bias
+    }
+
+    /// Still or moving, and for how long.
+    pub fn motion(&self) -> Motion {
+        self.rest.motion()
+    }
+
+    /// At rest: how fast the orientation still turns, that is the heading's drift, in the body's axes.
+    /// None on the move, when nobody can tell.
+    pub fn residual(&self) -> Option<AngularRate<T>> {
+        matches!(self.motion(), Motion::Still { .. })
+            .then(|| AngularRate::from_rad_per_s(self.rest.mean_rate() - self.bias.rad_per_s()))
+    }
+
+    /// What the compass is worth at the moment.
+    pub fn field_verdict(&self) -> FieldVerdict {
+        self.heading.verdict()
+    }
+
+    /// Samples that were no measurements.
+    pub fn refused(&self) -> u32 {
+        self.refused
+    }
+
+    /// The time between two samples.
+    pub fn sample_period(&self) -> Seconds<T> {
+        self.sample_period
+    }
+}
+
+/// Every component finite and not beyond `limit`.
+fn within<T: RealField + Copy>(v: Vector3<T>, limit: f64) -> bool {
+    let limit: T = convert(limit);
+    // Written so that what is not a number is not within.
+    v.iter().all(|component| component.abs() <= limit)
+}

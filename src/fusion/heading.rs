@@ -1,0 +1,102 @@
+//! A turn about the vertical, kept beside the inclination: a compass that is wrong turns the picture,
+//! but never tilts it.
+
+use super::disturbance::{Disturbance, FieldVerdict};
+use super::parameters::{Parameters, low_pass_weight};
+use crate::units::{RADIANS_PER_DEGREE, Seconds};
+use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
+
+/// The compass.
+#[derive(Clone, Copy, Debug)]
+pub struct Heading<T: RealField> {
+    low_pass: T,
+    /// rad/s, squared.
+    turning: T,
+    disturbance: Disturbance<T>,
+    /// Cosine and sine of half the turn about y.
+    half: [T; 2],
+    /// Fields since the start, or since the reference changed: the first weigh alike.
+    age: u32,
+    renewed: u32,
+}
+
+/// From this rate on the sensor turns, °/s.
+const TURNING_DPS: f64 = 20.0;
+/// With a new reference the heading goes on as if it had followed it for so long, s.
+const RENEWED: f64 = 1.0;
+
+impl<T: RealField + Copy> Heading<T> {
+    pub fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
+        let turning: T = convert(TURNING_DPS * RADIANS_PER_DEGREE);
+        Self {
+            low_pass: low_pass_weight(parameters.heading_time, period),
+            turning: turning * turning,
+            disturbance: Disturbance::new(parameters, period),
+            half: [T::one(), T::zero()],
+            age: 0,
+            renewed: super::parameters::samples(Seconds(convert(RENEWED)), period),
+        }
+    }
+
+    /// One field, µT, in the world of the inclination. Returns the error of the heading before it was
+    /// corrected, or none if the field tells nothing: it is disturbed, or has no horizontal part.
+    ///
+    /// The error is the sine m_x/h of the angle, ±1 beyond a quarter turn. Of it a share of
+    /// max(1 − e^(−Δt/τ), 1/n) is corrected.
+    pub fn update(&mut self, field: Vector3<T>, rate: Vector3<T>) -> Option<T> {
+        let [c, s] = self.half;
+        let (cos, sin) = (c * c - s * s, (c + c) * s);
+        let x = cos * field.x + sin * field.z;
+        let z = cos * field.z - sin * field.x;
+        let squared = x * x + z * z;
+        let horizontal = squared.sqrt();
+        // Below 0.01 µT there is no north.
+        if horizontal < convert(0.01) {
+            return None;
+        }
+        let turning = rate.norm_squared() > self.turning;
+        let renewed = self.disturbance.update([horizontal, field.y], turning);
+        if renewed {
+            self.age = self.age.min(self.renewed);
+        }
+        if self.disturbance.verdict() != FieldVerdict::Undisturbed {
+            return None;
+        }
+        self.age = self.age.saturating_add(1);
+        let error = if z > T::zero() {
+            T::one().copysign(x)
+        } else {
+            x / horizontal
+        };
+        let share = T::one() / convert(f64::from(self.age));
+        let half = error * self.low_pass.max(share) * convert(0.5);
+        self.turn_by(half);
+        Some(error)
+    }
+
+    /// Turns on by twice this half angle.
+    fn turn_by(&mut self, half: T) {
+        let [c, s] = self.half;
+        let (sin, cos) = half.sin_cos();
+        let turned = [c * cos - s * sin, s * cos + c * sin];
+        let squared = turned[0] * turned[0] + turned[1] * turned[1];
+        let scale = (convert::<f64, T>(3.0) - squared) * convert(0.5);
+        self.half = turned.map(|part| part * scale);
+    }
+
+    /// The turn about y, world of the inclination to world.
+    pub fn turn(&self) -> UnitQuaternion<T> {
+        let [c, s] = self.half;
+        UnitQuaternion::new_unchecked(Quaternion::new(c, T::zero(), s, T::zero()))
+    }
+
+    pub fn verdict(&self) -> FieldVerdict {
+        self.disturbance.verdict()
+    }
+
+    /// Heading 0; the reference stays.
+    pub fn restart(&mut self) {
+        self.half = [T::one(), T::zero()];
+        self.age = 0;
+    }
+}

@@ -1,0 +1,135 @@
+//! Nothing moves if rate and force have stayed close to their own low-pass for a while.
+
+use super::parameters::{Parameters, low_pass_weight, samples};
+use crate::units::{AngularRate, RADIANS_PER_DEGREE, Seconds};
+use nalgebra::{RealField, Vector3, convert};
+
+/// What the sensor does, and since how many samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// At rest for so long.
+    Still {
+        /// Samples since rest was noticed; the first is 1.
+        samples: u32,
+    },
+    /// Moving, or not yet still for long enough.
+    Moving {
+        /// Samples since the end of the last rest; since the start if there was none.
+        samples: u32,
+    },
+}
+
+/// Watches rate and force.
+#[derive(Clone, Copy, Debug)]
+pub struct Rest<T: RealField> {
+    coefficients: Coefficients<T>,
+    /// Low-passed rate, rad/s, and force, m/s²; none before the first sample.
+    mean: Option<(Vector3<T>, Vector3<T>)>,
+    /// Samples in a row close to the mean.
+    calm: u32,
+    motion: Motion,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Coefficients<T> {
+    low_pass: T,
+    /// Squared, (rad/s)².
+    rate: T,
+    /// Squared, (m/s²)².
+    force: T,
+    /// rad/s.
+    largest_bias: T,
+    /// rad/s.
+    largest_change: T,
+    calm: u32,
+    /// Calm for so long outdoes a bias known before.
+    long: u32,
+}
+
+/// A bias that is not the one known is believed after so many times the time of rest.
+const LONG: u32 = 20;
+
+impl<T: RealField + Copy> Rest<T> {
+    pub fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
+        let radians: T = convert(RADIANS_PER_DEGREE);
+        let rate = parameters.rest_rate_dps * radians;
+        let calm = samples(parameters.rest_time, period);
+        Self {
+            coefficients: Coefficients {
+                low_pass: low_pass_weight(parameters.rest_filter_time, period),
+                rate: rate * rate,
+                force: parameters.rest_force * parameters.rest_force,
+                largest_bias: parameters.largest_bias_dps * radians,
+                largest_change: parameters.largest_change_dps * radians,
+                calm,
+                long: calm.saturating_mul(LONG),
+            },
+            mean: None,
+            calm: 0,
+            motion: Motion::Moving { samples: 0 },
+        }
+    }
+
+    /// One sample, rad/s with its bias and m/s², body frame.
+    ///
+    /// A steady slow turn about the vertical looks like a bias to a gyro and an accelerometer. What
+    /// bounds it is how large a bias can be, and, once one was measured at rest (`known`), how far it
+    /// can have drifted; a bias that is farther off must show for half a minute.
+    pub fn update(
+        &mut self,
+        rate: Vector3<T>,
+        force: Vector3<T>,
+        known: Option<AngularRate<T>>,
+    ) -> Motion {
+        let Coefficients {
+            low_pass,
+            rate: rate_limit,
+            force: force_limit,
+            largest_bias,
+            largest_change,
+            calm,
+            long,
+        } = self.coefficients;
+        let (mean_rate, mean_force) = self.mean.unwrap_or((rate, force));
+        let mean_rate = mean_rate + (rate - mean_rate) * low_pass;
+        let mean_force = mean_force + (force - mean_force) * low_pass;
+        self.mean = Some((mean_rate, mean_force));
+        let close = (rate - mean_rate).norm_squared() < rate_limit
+            && (force - mean_force).norm_squared() < force_limit
+            && mean_rate.amax() <= largest_bias;
+        self.calm = if close {
+            self.calm.saturating_add(1)
+        } else {
+            0
+        };
+        let drifted =
+            known.is_some_and(|known| (mean_rate - known.rad_per_s()).amax() > largest_change);
+        let still = self.calm >= if drifted { long } else { calm };
+        self.motion = match (still, self.motion) {
+            (true, Motion::Still { samples }) => Motion::Still {
+                samples: samples.saturating_add(1),
+            },
+            (true, Motion::Moving { .. }) => Motion::Still { samples: 1 },
+            (false, Motion::Moving { samples }) => Motion::Moving {
+                samples: samples.saturating_add(1),
+            },
+            (false, Motion::Still { .. }) => Motion::Moving { samples: 1 },
+        };
+        self.motion
+    }
+
+    /// The low-passed rate, rad/s, body frame; zero before the first sample.
+    pub fn mean_rate(&self) -> Vector3<T> {
+        self.mean.map_or_else(Vector3::zeros, |(rate, _)| rate)
+    }
+
+    pub fn motion(&self) -> Motion {
+        self.motion
+    }
+
+    /// Forgets what it saw, but not since when the board moves.
+    pub fn restart(&mut self) {
+        self.mean = None;
+        self.calm = 0;
+    }
+}
