@@ -179,6 +179,10 @@ fn eq_10_has_pitch_about_x_and_roll_about_z_and_no_yaw() {
     assert!((a - Vector3::new(0.0, 0.75_f64.sqrt(), -0.5)).norm() < 1e-12);
     let a = tilt(0.0, 30.0).up_in_body();
     assert!((a - Vector3::new(0.5, 0.75_f64.sqrt(), 0.0)).norm() < 1e-12);
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert_eq!(tilt(bad, 30.0).up_in_body(), tilt(0.0, 30.0).up_in_body());
+        assert_eq!(tilt(30.0, bad).up_in_body(), tilt(30.0, 0.0).up_in_body());
+    }
     let about = |axis, angle: f64| UnitQuaternion::from_axis_angle(&axis, angle);
     let mut random = Random(4);
     for _ in 0..10_000 {

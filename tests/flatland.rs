@@ -373,6 +373,24 @@ fn alpha_outside_0_to_1_counts_as_the_nearer_end() {
             "{alpha}: {roll:?}"
         );
     }
+    // However far outside, and at any period.
+    fn far<T: RealField + Copy>() {
+        for exponent in -30..=30 {
+            for period in [1e-4, 0.001, 0.0033, 0.01, 1.0 / 3.0] {
+                let (far, period) = (10.0_f64.powi(exponent), Seconds(convert::<f64, T>(period)));
+                for far in [far, f64::INFINITY] {
+                    let weight = |alpha: f64| {
+                        TimeConstant::from_gyro_weight(convert::<f64, T>(alpha), period)
+                            .gyro_weight(period)
+                    };
+                    assert_eq!(weight(-far), T::zero(), "-{far}");
+                    assert_eq!(weight(1.0 + far), T::one(), "1 + {far}");
+                }
+            }
+        }
+    }
+    far::<f32>();
+    far::<f64>();
 }
 
 #[test]

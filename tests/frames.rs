@@ -264,6 +264,26 @@ fn the_papers_angles_are_the_notes_with_yaw_and_roll_negated() {
 }
 
 #[test]
+fn what_is_no_rotation_counts_as_none() {
+    let identity = UnitQuaternion::<f64>::identity();
+    let q = quaternion::<f64>([0.6, 0.0, 0.8], 1.1);
+    for w in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0] {
+        let none = UnitQuaternion::new_unchecked(Quaternion::new(w, 0.0, 0.0, 0.0));
+        assert_eq!(passive::matrix(none), Matrix3::identity());
+        for step in [side::step_in_world, side::step_in_body] {
+            assert!(step(none, q).angle_to(&q) < 1e-9);
+            assert_eq!(step(q, none).angle_to(&identity), 0.0);
+            assert_eq!(step(none, none), identity);
+        }
+    }
+    for length in [1e-200, 1e200] {
+        let other = UnitQuaternion::new_unchecked(q.into_inner() * length);
+        assert!((passive::matrix(other) - passive::matrix(q)).amax() < 1e-9);
+        assert!((side::step_in_world(other, other).norm() - 1.0).abs() < 1e-9);
+    }
+}
+
+#[test]
 fn degrees_and_radians_are_there_and_back() {
     assert!((Angle::from_degrees(180.0).rad() - PI).abs() < 1e-12);
     assert!((Angle::from_rad(FRAC_PI_2).degrees() - 90.0).abs() < 1e-12);

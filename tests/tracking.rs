@@ -320,6 +320,9 @@ fn the_error_of_integration_goes_with_the_time_step_not_with_its_square() {
         let ratio = pair[0] / pair[1];
         assert!((ratio - 2.0).abs() < 0.05, "{errors:?}");
     }
+    for (error, expected) in errors.iter().zip([0.0329, 0.0164, 0.0082, 0.0041]) {
+        assert!((error - expected).abs() < 1e-4, "{errors:?}");
+    }
 }
 
 #[test]

@@ -15,7 +15,7 @@ pub fn step<T: RealField + Copy>(rate: AngularRate<T>, period: Seconds<T>) -> Un
     from_half_angle(rate.rad_per_s() * (period.0 * convert(0.5)))
 }
 
-/// Integrates the gyro, and nothing else.
+/// Integrates the gyro, and nothing else: eq. 17 and 18.
 #[derive(Clone, Copy, Debug)]
 pub struct DeadReckoning<T: RealField> {
     sample_period: Seconds<T>,
@@ -31,7 +31,8 @@ impl<T: RealField + Copy> DeadReckoning<T> {
         }
     }
 
-    /// Starts again from this orientation, body to world.
+    /// Starts again from this orientation, body to world; from the identity if it is zero or not
+    /// finite.
     pub fn set(&mut self, orientation: UnitQuaternion<T>) {
         self.orientation = renormalised(orientation);
     }
@@ -44,7 +45,7 @@ impl<T: RealField + Copy> DeadReckoning<T> {
         self.orientation
     }
 
-    /// Body to world.
+    /// As of the last sample, body to world.
     pub fn orientation(&self) -> UnitQuaternion<T> {
         self.orientation
     }

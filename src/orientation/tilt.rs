@@ -32,7 +32,8 @@ pub fn level<T: RealField + Copy>(
 /// world.
 ///
 /// The product q a q⁻¹ is worked out with two cross products instead of two quaternion products:
-/// the same vector for half the arithmetic.
+/// the same vector for half the arithmetic. What is not finite stays so; [`correction`] then
+/// corrects nothing.
 pub fn in_world<T: RealField + Copy>(
     orientation: UnitQuaternion<T>,
     force: SpecificForce<T>,

@@ -20,7 +20,8 @@ pub struct Earth<T> {
 }
 
 impl<T: RealField + Copy> Earth<T> {
-    /// The fields in the reference frame: g_r = (0, 0, g) and B_r = (B cos δ, 0, B sin δ).
+    /// The fields in the reference frame: g_r = (0, 0, g) and B_r = (B cos δ, 0, B sin δ). What is not
+    /// finite stays so, and [`Fields::directions`] says so.
     pub fn in_reference(&self) -> Fields<T> {
         let (sin, cos) = self.dip.rad().sin_cos();
         Fields {

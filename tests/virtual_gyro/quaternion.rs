@@ -184,3 +184,22 @@ fn both_methods_give_the_same_attitude() {
         assert!(largest_difference(&transpose(&r(angles)), &first) < 1e-9);
     }
 }
+
+#[test]
+fn what_is_no_angle_and_no_rotation_counts_as_none() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let angles = TaitBryan::from_rad(0.3, bad, -1.1);
+        let without = TaitBryan::from_rad(0.3, 0.0, -1.1);
+        assert_eq!(from_angles(&angles), from_angles(&without));
+        assert_eq!(angles.matrix(), without.matrix());
+        let none = UnitQuaternion::new_unchecked(quaternion([0.1, bad, 0.0, 1.0]));
+        assert_eq!(rad(&to_angles(&none, None)), [0.0; 3]);
+    }
+    let none = UnitQuaternion::new_unchecked(quaternion([0.0; 4]));
+    assert_eq!(rad(&to_angles(&none, None)), [0.0; 3]);
+    for length in [1e-200, 1e200] {
+        let q = of::<f64>([0.3, -0.4, 1.1]);
+        let other = UnitQuaternion::new_unchecked(q.into_inner() * length);
+        assert!(apart(rad(&to_angles(&other, None)), [0.3, -0.4, 1.1]) < 1e-12);
+    }
+}
