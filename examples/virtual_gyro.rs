@@ -83,7 +83,7 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Figure 7: x, y and z point down for 5 s each; from 2 to 4 s the device is shaken five times a
 /// second, by up to `shake` (g). Draws what comes in and what is left of it, as norm and axes (g).
-fn figure_7(cut_off: &str, mut extraction: Extraction, shake: f64) -> Vec<Line> {
+fn figure_7(cut_off: &str, mut extraction: Extraction, shake: f64) -> Vec<Line<'static>> {
     let (mut values, mut norm_off, mut down_off) = (Vec::new(), 0.0_f64, 0.0_f64);
     for t in (0..(15.0 * RATE) as u32).map(|k| f64::from(k) / RATE) {
         let down = Vector3::ith((t / 5.0) as usize, G);
@@ -110,7 +110,7 @@ fn draw(name: &str, title: &'static str, y: &'static str, lines: Vec<Line>) -> i
     Ok(())
 }
 
-fn line(name: &'static str, values: impl Iterator<Item = f64>) -> Line {
+fn line(name: &'static str, values: impl Iterator<Item = f64>) -> Line<'static> {
     let values = values.enumerate();
     let points = values.map(|(k, y)| [k as f64 / RATE, y]).collect();
     Line { name, points }
