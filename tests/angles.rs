@@ -68,7 +68,7 @@ fn radians<T: RealField + Copy>(tilt: PitchRoll<T>) -> [f64; 2] {
 
 fn both_pairs_rebuild_the_force<T: RealField + Copy>(tolerance: f64) {
     let mut random = Random(1);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let a = random.force();
         let [pitch, roll] = radians(pitch_and_roll(force::<T>(a)));
         assert!(pitch.abs() <= FRAC_PI_2 + 1e-7 && roll.abs() <= PI + 1e-6);
@@ -106,7 +106,7 @@ fn eq_11_and_12_as_printed_describe_another_board_over_half_the_sphere() {
     // Every a_y < 0, and none with a_y > 0; at worst a whole diameter.
     let mut random = Random(2);
     let mut worst = 0.0_f64;
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let a = random.force();
         let error = rebuilding_error([printed_pitch(a), printed_roll(a)], a);
         let across = a[0].hypot(a[1]) / (a[0].hypot(a[1])).hypot(a[2]);
@@ -123,7 +123,7 @@ fn eq_11_and_12_as_printed_describe_another_board_over_half_the_sphere() {
 #[test]
 fn each_pitch_is_the_formula_of_its_document() {
     let mut random = Random(3);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let a = random.force();
         let [x, y, z] = a;
         // 2016 lecture, first form.
@@ -185,7 +185,7 @@ fn eq_10_has_pitch_about_x_and_roll_about_z_and_no_yaw() {
     }
     let about = |axis, angle: f64| UnitQuaternion::from_axis_angle(&axis, angle);
     let mut random = Random(4);
-    for _ in 0..10_000 {
+    for _ in 0..100_000 {
         let [yaw, pitch, roll] = [(); 3].map(|()| random.between(-PI, PI));
         let board = about(Vector3::y_axis(), yaw)
             * about(Vector3::x_axis(), pitch)

@@ -103,7 +103,7 @@ fn flatland_blends_across_the_seam() {
 fn the_fused_angle_lies_between_its_two_sources_at_every_angle() {
     // The same blend as unit vectors: independent of seams. The short arc from one to the other.
     let mut random = Random(1);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let (start, shown) = (random.between(-PI, PI), random.between(-PI, PI));
         let (alpha, turned) = (random.between(0.0, 1.0), random.between(-0.5, 0.5));
         let mut flat = filter(alpha, 0.01);
@@ -146,7 +146,7 @@ fn the_start_is_the_one_chosen() {
 fn eq_8_has_an_angle_for_every_force_with_a_direction() {
     let angle = |x, y| from_accelerometer(SpecificForce::from_m_per_s2(Vector3::new(x, y, 1.0)));
     let mut random = Random(2);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let truth = random.between(-PI, PI);
         let size = 10.0_f64.powf(random.between(-150.0, 150.0));
         let found = angle(size * truth.sin(), size * truth.cos()).expect("a direction");
@@ -186,7 +186,7 @@ fn a_difference_goes_the_short_way() {
 #[test]
 fn the_two_transfer_functions_sum_to_one() {
     let mut random = Random(3);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let alpha = random.between(0.0, 1.0);
         let dt = 10.0_f64.powf(random.between(-4.0, 0.0));
         let hertz = 10.0_f64.powf(random.between(-6.0, 3.0));
@@ -451,7 +451,7 @@ fn what_is_not_finite_turns_nothing_and_corrects_nothing() {
 
 fn huge_turns_stay_on_the_circle<T: RealField + Copy>(largest_exponent: f64) {
     let mut random = Random(4);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let turn: T = convert(10.0_f64.powf(random.between(0.0, largest_exponent)));
         let (zero, angle) = (Angle::from_rad(T::zero()), Angle::from_rad(turn));
         assert!(shortest_turn(zero, angle).rad().abs() <= T::pi());

@@ -19,7 +19,7 @@ use vrduino::orientation::tilt;
 use vrduino::units::{Angle, AngularRate, SpecificForce};
 use vrduino::virtual_gyro::angles::TaitBryan;
 
-const INPUTS: usize = 100_000;
+const INPUTS: usize = 2_000_000;
 
 const EAST: Vector = [1.0, 0.0, 0.0];
 const WEST: Vector = [-1.0, 0.0, 0.0];
@@ -341,9 +341,12 @@ fn the_notes_and_the_post_correct_a_tilt_alike() {
         let force = SpecificForce::from_m_per_s2(Vector3::new(x, y, z));
         let notes = tilt::correction(force, 1.0 - weight.alpha());
         assert!(off(&matrix(notes), &post) < 1e-9);
-        // With +α as the post says in words, “positive from u towards ŷ”, it would tilt further.
-        let in_words = rotation(t, 1e-3 * horizontal.atan2(y));
-        assert!(apply(&in_words, [x, y, z])[1] < y);
+        // With +α as the post says in words, “positive from u towards ŷ”, it would tilt further. (Next to
+        // up that is less than rounding, next to down it passes the other side.)
+        if horizontal > 0.01 {
+            let in_words = rotation(t, 1e-3 * horizontal.atan2(y));
+            assert!(apply(&in_words, [x, y, z])[1] < y);
+        }
     }
 }
 

@@ -18,7 +18,7 @@ use vrduino::orientation::quaternion::{
 };
 use vrduino::units::Angle;
 
-const MANY: usize = 100_000;
+const MANY: usize = 2_000_000;
 
 fn quaternion(random: &mut Random, size: f64) -> Quaternion<f64> {
     let [w, x, y, z] = [(); 4].map(|()| random.between(-size, size));

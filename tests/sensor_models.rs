@@ -245,7 +245,7 @@ fn model<T: RealField + Copy>(random: &mut Random) -> MeasurementModel<AngularRa
 fn calibration_undoes<T: RealField + Copy>(tolerance: f64) {
     let none = AngularRate::zero();
     let mut random = Random(1);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let model = model::<T>(&mut random);
         let calibration = model.calibration().expect("close to the identity");
         let truth = Vector3::from(random.vector(10.0).map(convert));

@@ -220,7 +220,7 @@ fn no_input_makes_anything_but_a_rotation() {
 
 fn one_step_is_exact<T: RealField + Copy>(tolerance: f64) {
     let mut random = Random(41);
-    for _ in 0..50_000 {
+    for _ in 0..500_000 {
         let (w, period) = (random.vector(35.0), random.between(0.0, 0.1));
         let mut gyro = DeadReckoning::new(Seconds(convert::<f64, T>(period)));
         let q = gyro.update(&reading(w, [0.0; 3]));
@@ -245,7 +245,7 @@ fn force<T: RealField + Copy>(v: [f64; 3]) -> SpecificForce<T> {
 
 fn one_update_is_exact<T: RealField + Copy>(tolerance: f64) {
     let mut random = Random(44);
-    for _ in 0..20_000 {
+    for _ in 0..200_000 {
         let (start, alpha) = (random_quaternion(&mut random), random.unit());
         let (w, a) = (random.vector(5.0), random.vector(10.0));
         let c = convert::<f64, T>;
@@ -254,13 +254,15 @@ fn one_update_is_exact<T: RealField + Copy>(tolerance: f64) {
         filter.set(unit_quaternion(start));
         let by_gyro = notes_step(&matrix(&unit_quaternion::<f64>(start)), w, DT);
         let [x, y, z] = apply(&by_gyro, a);
-        // Close to upside down the axis hangs on the last digits of the force.
-        if y < 0.0 && x.hypot(z) < -0.05 * y {
+        // Within 6° of upside down the axis hangs on the last digits of the force: single precision has
+        // 1e-5 there no more.
+        if y < 0.0 && x.hypot(z) < -0.1 * y {
             continue;
         }
         let q = filter.update(&reading(w, a));
         let expected = notes_tilt(&by_gyro, a, 1.0 - alpha);
-        assert!(largest_difference(&matrix(&q), &expected) < tolerance);
+        let off = largest_difference(&matrix(&q), &expected);
+        assert!(off < tolerance, "{off}: {start:?} {alpha} {w:?} {a:?}");
     }
 }
 
@@ -349,7 +351,7 @@ fn quaternions_pass_where_adding_up_angles_does_not() {
 fn a_vector_of_the_body_is_seen_from_the_world() {
     // Eq. 19, and eq. 20 and 21 for the force.
     let mut random = Random(42);
-    for _ in 0..10_000 {
+    for _ in 0..100_000 {
         let (w, u) = (random.vector(3.0), random.vector(10.0));
         let mut gyro = DeadReckoning::new(Seconds(0.5));
         gyro.update(&reading(w, [0.0; 3]));

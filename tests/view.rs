@@ -28,7 +28,7 @@ use vrduino::view::viewer::Viewer;
 use vrduino::view::{ViewError, from_stream, inverse};
 
 const EYES: [(Eye, f64); 2] = [(Eye::Left, -32.0), (Eye::Right, 32.0)];
-const INPUTS: usize = 100_000;
+const INPUTS: usize = 2_000_000;
 
 fn quaternion<T: RealField + Copy>(axis: [f64; 3], angle: f64) -> UnitQuaternion<T> {
     let (sin, cos) = (angle / 2.0).sin_cos();
