@@ -50,6 +50,49 @@ impl Estimator {
     }
 }
 
+/// Ours, and those of others where they are built in (feature `peers`).
+pub fn all() -> Vec<Estimator> {
+    let mut all = ours();
+    all.extend(peers());
+    all
+}
+
+#[cfg(not(feature = "peers"))]
+fn peers() -> Vec<Estimator> {
+    Vec::new()
+}
+
+/// Each on the parameters its authors chose.
+#[cfg(feature = "peers")]
+fn peers() -> Vec<Estimator> {
+    use vrduino_accuracy_peers::{PEERS, Sample};
+    use vrduino_emulator::motion::imub::y_up_from_enu;
+
+    let estimator = |peer: vrduino_accuracy_peers::Peer| {
+        let axes = if peer.axes == 6 {
+            Axes::Six
+        } else {
+            Axes::Nine
+        };
+        let name = peer.name.trim_end_matches(['-', '6', '9']);
+        Estimator::new(&format!("{name} ({})", peer.source), axes, move |trial| {
+            let sample = |axes: &NineAxes| Sample {
+                rate: axes.sample.rate.rad_per_s().into(),
+                force: axes.sample.force.m_per_s2().into(),
+                field: axes.field.microtesla().into(),
+            };
+            let samples: Vec<_> = trial.samples.iter().map(sample).collect();
+            let found = peer.run(trial.period, &samples).into_iter();
+            let y_up = found.map(y_up_from_enu);
+            let unit = |[w, x, y, z]: [f64; 4]| {
+                UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z))
+            };
+            y_up.map(unit).collect()
+        })
+    };
+    PEERS.into_iter().map(estimator).collect()
+}
+
 /// A lead that suits BROAD: its optical reference is so much ahead of its sensor, s.
 const LEAD: f64 = 0.0025;
 

@@ -54,7 +54,7 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let trials = Trial::open_all(&arguments.recordings)?;
-    let estimators = estimators::ours();
+    let estimators = estimators::all();
     let mut out = io::stdout().lock();
     writeln!(
         out,
