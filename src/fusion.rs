@@ -45,7 +45,7 @@ use rest::Rest;
 /// other forms of it are held against.
 #[derive(Clone, Debug)]
 pub struct Fusion<T: RealField> {
-    sample_period: Seconds<T>,
+    rates: Rates<T>,
     lead: Seconds<T>,
     inclination: Inclination<T>,
     rest: Rest<T>,
@@ -61,7 +61,7 @@ impl<T: RealField + Copy> Fusion<T> {
     /// Starts with the first sample: level by its force, heading ahead.
     pub fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {
         Self {
-            sample_period: rates.sample,
+            rates,
             lead: parameters.lead,
             inclination: Inclination::new(parameters, rates.sample),
             rest: Rest::new(parameters, rates.sample),
@@ -71,6 +71,15 @@ impl<T: RealField + Copy> Fusion<T> {
             started: false,
             refused: 0,
         }
+    }
+
+    /// Goes on with other parameters from where it is.
+    pub fn tune(&mut self, parameters: &Parameters<T>) {
+        self.lead = parameters.lead;
+        self.inclination.tune(parameters, self.rates.sample);
+        self.rest.tune(parameters, self.rates.sample);
+        self.bias.tune(parameters, self.rates);
+        self.heading.tune(parameters, self.rates.field);
     }
 
     /// One sample with the gyro's bias still in it, body frame; every so often with a field,
@@ -137,6 +146,13 @@ impl<T: RealField + Copy> Fusion<T> {
         self.started = true;
     }
 
+    /// Goes on from this orientation, body to world, with bias and compass as they are.
+    pub fn set(&mut self, orientation: UnitQuaternion<T>) {
+        self.inclination
+            .set(self.heading.turn().inverse() * orientation);
+        self.started = true;
+    }
+
     /// Takes the tilt this force (body frame) shows at once and keeps the heading: after a gap.
     pub fn level(&mut self, force: SpecificForce<T>) {
         self.inclination.level(force);
@@ -173,11 +189,6 @@ impl<T: RealField + Copy> Fusion<T> {
     /// Samples that were no measurements.
     pub fn refused(&self) -> u32 {
         self.refused
-    }
-
-    /// The time between two samples.
-    pub fn sample_period(&self) -> Seconds<T> {
-        self.sample_period
     }
 }
 

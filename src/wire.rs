@@ -117,6 +117,30 @@ pub fn bias_measured(bias: AngularRate<f32>) -> Line {
     end(line)
 }
 
+/// `OK NAME value unit`, 4 decimals: a setting.
+pub fn answer(name: &str, value: f32, unit: &str) -> Line {
+    let mut line = Line::new();
+    push(&mut line, "OK ");
+    push(&mut line, name);
+    push(&mut line, " ");
+    push_decimal::<4>(&mut line, value);
+    if !unit.is_empty() {
+        push(&mut line, " ");
+        push(&mut line, unit);
+    }
+    end(line)
+}
+
+/// `OK bias x y z deg/s, verdict`, 3 decimals.
+pub fn bias(bias: AngularRate<f32>, verdict: fmt::Arguments<'_>) -> Line {
+    let mut numbers = Line::new();
+    for value in bias.dps().iter() {
+        push(&mut numbers, " ");
+        push_decimal::<3>(&mut numbers, *value);
+    }
+    text(format_args!("OK bias{numbers} deg/s, {verdict}"))
+}
+
 /// A message for people. What does not fit into a line is cut off; a newline within becomes a
 /// space, or one line would be two.
 pub fn text(message: impl fmt::Display) -> Line {

@@ -1,8 +1,8 @@
 //! What the gyro reads when nothing turns. At rest that is its mean; on the move, what the errors of
 //! tilt and heading add up to says it slowly.
 
-use super::parameters::{Parameters, Rates, samples};
-use crate::units::{AngularRate, RADIANS_PER_DEGREE};
+use super::parameters::{Parameters, Rates, samples, size, weight};
+use crate::units::{AngularRate, RADIANS_PER_DEGREE, Seconds};
 use nalgebra::{RealField, Vector3, convert};
 
 /// How the bias is known.
@@ -55,29 +55,38 @@ const MEMORY: f64 = 60.0;
 /// The compass is left alone for its first second.
 const FIELD_START: f64 = 1.0;
 
+impl<T: RealField + Copy> Coefficients<T> {
+    fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {
+        Self {
+            period: size(rates.sample.0),
+            field_period: size(rates.field.0),
+            largest: size(parameters.largest_bias_dps * convert(RADIANS_PER_DEGREE)),
+            tilt: size(parameters.tilt_integral * rates.sample.0),
+            tilt_start: size(parameters.tilt_integral_start.0),
+            tilt_start_samples: samples(parameters.tilt_integral_start, rates.sample),
+            heading: size(parameters.heading_integral * rates.field.0),
+            heading_start: size(parameters.heading_integral_start * rates.field.0),
+            rest_worth: size(parameters.rest_worth.0),
+            memory: samples(Seconds(convert(MEMORY)), rates.sample),
+            field_start: samples(Seconds(convert(FIELD_START)), rates.field),
+        }
+    }
+}
+
 impl<T: RealField + Copy> Bias<T> {
     pub(super) fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {
-        use crate::units::Seconds;
         Self {
-            coefficients: Coefficients {
-                period: rates.sample.0,
-                field_period: rates.field.0,
-                largest: parameters.largest_bias_dps * convert(RADIANS_PER_DEGREE),
-                tilt: parameters.tilt_integral * rates.sample.0,
-                tilt_start: parameters.tilt_integral_start.0,
-                tilt_start_samples: samples(parameters.tilt_integral_start, rates.sample),
-                heading: parameters.heading_integral * rates.field.0,
-                heading_start: parameters.heading_integral_start * rates.field.0,
-                rest_worth: parameters.rest_worth.0,
-                memory: samples(Seconds(convert(MEMORY)), rates.sample),
-                field_start: samples(Seconds(convert(FIELD_START)), rates.field),
-            },
+            coefficients: Coefficients::new(parameters, rates),
             rad_per_s: Vector3::zeros(),
             at_rest: None,
             source: Source::Unmeasured,
             age: 0,
             fields: 0,
         }
+    }
+
+    pub(super) fn tune(&mut self, parameters: &Parameters<T>, rates: Rates<T>) {
+        self.coefficients = Coefficients::new(parameters, rates);
     }
 
     /// As it is subtracted.
@@ -128,10 +137,10 @@ impl<T: RealField + Copy> Bias<T> {
 
     /// The errors of this sample, times their gains: rad/s in the world.
     ///
-    /// The gain for tilt is k_i max(1, t₀/(1 + t)): high at first, when nothing is known. That for
-    /// the heading falls in the same way until there was a rest; a rest tells more of the bias than
-    /// any compass near steel, so after one the integral comes back only as the temperature may have
-    /// changed.
+    /// Until the first rest nothing is known, so the gains begin high and fall as 1/(1 + t): that for tilt
+    /// is k_i max(1, t₀/(1 + t)). A rest tells more of the bias than any motion, and more than any
+    /// compass near steel: after one the tilt's gain is k_i, and the heading's comes back only as the
+    /// temperature may have changed.
     pub(super) fn integrals(&mut self, tilt: [T; 2], heading: Option<T>) -> Vector3<T> {
         let Coefficients {
             period,
@@ -146,7 +155,7 @@ impl<T: RealField + Copy> Bias<T> {
             ..
         } = self.coefficients;
         let seconds = |samples: u32, period: T| convert::<f64, T>(f64::from(samples)) * period;
-        if self.age <= tilt_start_samples {
+        if self.source == Source::Unmeasured && self.age <= tilt_start_samples {
             let high = tilt_start / (T::one() + seconds(self.age, period));
             tilt_gain *= high.max(T::one());
         }
@@ -159,7 +168,7 @@ impl<T: RealField + Copy> Bias<T> {
                 Source::Unmeasured => heading_gain
                     .max(heading_start / (T::one() + seconds(self.fields, field_period))),
                 Source::Rest { samples } => {
-                    heading_gain * (seconds(samples, period) / rest_worth).min(T::one())
+                    heading_gain * weight(seconds(samples, period) / rest_worth)
                 }
             };
             error * gain

@@ -38,6 +38,11 @@ impl<T: RealField + Copy> Heading<T> {
         }
     }
 
+    pub fn tune(&mut self, parameters: &Parameters<T>, period: Seconds<T>) {
+        self.low_pass = low_pass_weight(parameters.heading_time, period);
+        self.disturbance.tune(parameters, period);
+    }
+
     /// One field, µT, in the world of the inclination. Returns the error of the heading before it was
     /// corrected, or none if the field tells nothing: it is disturbed, or has no horizontal part.
     ///

@@ -1,6 +1,7 @@
 //! Tilt without drift from gyro and accelerometer; the heading is the gyro's.
 
-use super::parameters::{Parameters, samples, weight};
+use super::parameters::{Parameters, samples, size, weight};
+use crate::orientation::quaternion::trued;
 use crate::orientation::tilt;
 use crate::units::{AngularRate, METRES_PER_S2_PER_G, Seconds, SpecificForce};
 use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
@@ -34,7 +35,7 @@ impl<T: RealField + Copy> Coefficients<T> {
         let natural = convert::<f64, T>(core::f64::consts::SQRT_2) / parameters.tilt_time.0;
         let twice_damping = parameters.damping * convert(2.0);
         Self {
-            half_period: period.0 * convert(0.5),
+            half_period: size(period.0) * convert(0.5),
             low_pass: weight(-(-twice_damping * natural * period.0).exp_m1()),
             correction: weight(natural * period.0 / twice_damping),
             per_g: convert(1.0 / METRES_PER_S2_PER_G),
@@ -51,6 +52,10 @@ impl<T: RealField + Copy> Inclination<T> {
             error: [T::zero(); 2],
             age: 0,
         }
+    }
+
+    pub fn tune(&mut self, parameters: &Parameters<T>, period: Seconds<T>) {
+        self.coefficients = Coefficients::new(parameters, period);
     }
 
     /// One sample, body frame, bias removed. Returns b, radians about x and z of the world: how far
@@ -107,6 +112,13 @@ impl<T: RealField + Copy> Inclination<T> {
         self.orientation = tilt::level(self.orientation, force);
         self.error = [T::zero(); 2];
         self.age = 0;
+    }
+
+    /// Goes on from here.
+    pub fn set(&mut self, orientation: UnitQuaternion<T>) {
+        self.orientation = trued(orientation);
+        self.error = [T::zero(); 2];
+        self.age = self.coefficients.start;
     }
 
     /// The same with heading 0.

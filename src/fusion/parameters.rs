@@ -29,8 +29,7 @@ pub struct Parameters<T> {
     pub start_time: Seconds<T>,
     /// Gain of the integral of the tilt's error into the bias, 1/s². 0.005.
     pub tilt_integral: T,
-    /// So long after the start the integral is down to that gain; before, it is `time/(1 + t)` times as
-    /// large. 80 s.
+    /// Until the first rest the gain is `time/(1 + t)` times as large, down to the gain itself. 80 s.
     pub tilt_integral_start: Seconds<T>,
     /// Low-pass of rate and force for the detection of rest. 0.5 s.
     pub rest_filter_time: Seconds<T>,
@@ -100,6 +99,15 @@ pub(super) fn low_pass_weight<T: RealField + Copy>(time: Seconds<T>, period: Sec
 pub(super) fn weight<T: RealField + Copy>(value: T) -> T {
     if value > T::zero() {
         value.min(T::one())
+    } else {
+        T::zero()
+    }
+}
+
+/// A size or a gain that has no meaning is none.
+pub(super) fn size<T: RealField + Copy>(value: T) -> T {
+    if value > T::zero() && value.is_finite() {
+        value
     } else {
         T::zero()
     }
