@@ -88,15 +88,11 @@ impl<T: RealField + Copy> Fusion<T> {
     /// A sample that is not finite, or beyond what any sensor of this kind reports (200 rad/s,
     /// 1000 m/s²), is no measurement: the orientation stays as it is and [`Self::refused`] counts. A
     /// field that is none (zero, not finite, beyond 100 mT) leaves the heading to the gyro.
-    pub fn update(
-        &mut self,
-        sample: &Sample<T>,
-        field: Option<MagneticField<T>>,
-    ) -> UnitQuaternion<T> {
+    pub fn update(&mut self, sample: &Sample<T>, field: Option<MagneticField<T>>) {
         let (rate, force) = (sample.rate.rad_per_s(), sample.force.m_per_s2());
         if !within(rate, 200.0) || !within(force, 1000.0) {
             self.refused = self.refused.saturating_add(1);
-            return self.orientation();
+            return;
         }
         if !self.started {
             self.inclination.level(sample.force);
@@ -118,11 +114,11 @@ impl<T: RealField + Copy> Fusion<T> {
                 self.heading
                     .update(self.inclination.in_world(field), turning)
             });
-        if !matches!(motion, Motion::Still { .. }) {
-            let error = self.bias.integrals(tilt_error, heading_error);
+        if matches!(motion, Motion::Moving { .. })
+            && let Some(error) = self.bias.integrals(tilt_error, heading_error)
+        {
             self.bias.shift(self.inclination.in_body(error));
         }
-        self.orientation()
     }
 
     /// Body to world, led by [`Parameters::lead`]; the identity before the first sample.

@@ -1,7 +1,7 @@
 //! What the gyro reads when nothing turns. At rest that is its mean; on the move, what the errors of
 //! tilt and heading add up to says it slowly.
 
-use super::parameters::{Parameters, Rates, samples, size, weight};
+use super::parameters::{Parameters, Rates, samples, scalar, share, size, weight};
 use crate::units::{AngularRate, RADIANS_PER_DEGREE, Seconds};
 use nalgebra::{RealField, Vector3, convert};
 
@@ -36,7 +36,7 @@ struct Coefficients<T> {
     field_period: T,
     /// rad/s.
     largest: T,
-    /// Gain in one sample, 1/s.
+    /// Gain in [`TILT_EVERY`] samples, 1/s.
     tilt: T,
     tilt_start: T,
     /// Samples until the gain is the lasting one.
@@ -50,6 +50,8 @@ struct Coefficients<T> {
     field_start: u32,
 }
 
+/// Samples per look at the tilt's error.
+const TILT_EVERY: u32 = 8;
 /// A rest of hours follows the temperature: the mean goes back a minute, s.
 const MEMORY: f64 = 60.0;
 /// The compass is left alone for its first second.
@@ -61,7 +63,7 @@ impl<T: RealField + Copy> Coefficients<T> {
             period: size(rates.sample.0),
             field_period: size(rates.field.0),
             largest: size(parameters.largest_bias_dps * convert(RADIANS_PER_DEGREE)),
-            tilt: size(parameters.tilt_integral * rates.sample.0),
+            tilt: size(parameters.tilt_integral * rates.sample.0 * scalar(TILT_EVERY)),
             tilt_start: size(parameters.tilt_integral_start.0),
             tilt_start_samples: samples(parameters.tilt_integral_start, rates.sample),
             heading: size(parameters.heading_integral * rates.field.0),
@@ -121,8 +123,8 @@ impl<T: RealField + Copy> Bias<T> {
     pub(super) fn rests(&mut self, mean_rate: Vector3<T>, number: u32) {
         self.age = self.age.saturating_add(1);
         let number = number.min(self.coefficients.memory);
-        let share = T::one() / convert(f64::from(number));
-        self.rad_per_s = self.bounded(self.rad_per_s + (mean_rate - self.rad_per_s) * share);
+        let step = (mean_rate - self.rad_per_s) * share::<T>(number);
+        self.rad_per_s = self.bounded(self.rad_per_s + step);
         self.at_rest = Some(self.rad_per_s);
         self.source = Source::Rest { samples: 0 };
     }
@@ -135,13 +137,19 @@ impl<T: RealField + Copy> Bias<T> {
         }
     }
 
-    /// The errors of this sample, times their gains: rad/s in the world.
+    /// The errors of this sample, times their gains: rad/s in the world. None where there is nothing to
+    /// add: the tilt's error is looked at in every eighth sample, for it changes slowly and a turn into
+    /// the body's axes is dear; the heading's with every field.
     ///
     /// Until the first rest nothing is known, so the gains begin high and fall as 1/(1 + t): that for tilt
     /// is k_i max(1, t₀/(1 + t)). A rest tells more of the bias than any motion, and more than any
     /// compass near steel: after one the tilt's gain is k_i, and the heading's comes back only as the
     /// temperature may have changed.
-    pub(super) fn integrals(&mut self, tilt: [T; 2], heading: Option<T>) -> Vector3<T> {
+    pub(super) fn integrals(&mut self, tilt: [T; 2], heading: Option<T>) -> Option<Vector3<T>> {
+        let tilt_is_due = self.age.is_multiple_of(TILT_EVERY);
+        if !tilt_is_due && heading.is_none() {
+            return None;
+        }
         let Coefficients {
             period,
             field_period,
@@ -154,10 +162,13 @@ impl<T: RealField + Copy> Bias<T> {
             field_start,
             ..
         } = self.coefficients;
-        let seconds = |samples: u32, period: T| convert::<f64, T>(f64::from(samples)) * period;
+        let seconds = |samples: u32, period: T| scalar::<T>(samples) * period;
         if self.source == Source::Unmeasured && self.age <= tilt_start_samples {
             let high = tilt_start / (T::one() + seconds(self.age, period));
             tilt_gain *= high.max(T::one());
+        }
+        if !tilt_is_due {
+            tilt_gain = T::zero();
         }
         let heading = heading.map_or_else(T::zero, |error| {
             self.fields = self.fields.saturating_add(1);
@@ -173,7 +184,11 @@ impl<T: RealField + Copy> Bias<T> {
             };
             error * gain
         });
-        Vector3::new(tilt[0] * tilt_gain, heading, tilt[1] * tilt_gain)
+        Some(Vector3::new(
+            tilt[0] * tilt_gain,
+            heading,
+            tilt[1] * tilt_gain,
+        ))
     }
 
     /// Takes an error of the rate (rad/s, body frame) off the bias.

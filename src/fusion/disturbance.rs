@@ -1,7 +1,7 @@
 //! The field of the earth is the same wherever the sensor points: its horizontal and its vertical
 //! part stay. Near steel or a magnet they do not.
 
-use super::parameters::{Parameters, samples, weight};
+use super::parameters::{Parameters, samples, share, weight};
 use crate::units::Seconds;
 use nalgebra::{RealField, convert};
 
@@ -146,8 +146,4 @@ fn fits<T: RealField + Copy>(field: Dip<T>, reference: Dip<T>, tolerance: T) -> 
 
 fn towards<T: RealField + Copy>(from: Dip<T>, to: Dip<T>, weight: T) -> Dip<T> {
     [0, 1].map(|i| from[i] + (to[i] - from[i]) * weight)
-}
-
-fn share<T: RealField + Copy>(number: u32) -> T {
-    T::one() / convert(f64::from(number))
 }

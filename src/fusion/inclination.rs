@@ -1,7 +1,8 @@
 //! Tilt without drift from gyro and accelerometer; the heading is the gyro's.
 
-use super::parameters::{Parameters, samples, size, weight};
+use super::parameters::{Parameters, samples, share, size, weight};
 use crate::orientation::quaternion::trued;
+use crate::orientation::rotation::from_half_angle;
 use crate::orientation::tilt;
 use crate::units::{AngularRate, METRES_PER_S2_PER_G, Seconds, SpecificForce};
 use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
@@ -80,15 +81,13 @@ impl<T: RealField + Copy> Inclination<T> {
         self.error = [0, 1].map(|i| self.error[i] + low_pass * (e[i] - self.error[i]));
         let c = if self.age < start {
             self.age += 1;
-            let share = T::one() / convert(f64::from(self.age));
+            let share = share(self.age);
             // A knock in the first samples must not turn the picture over.
             e.map(|e| e.clamp(-T::one(), T::one()) * share)
         } else {
             self.error.map(|error| error * correction)
         };
-        let half: T = convert(0.5);
-        let correction = Quaternion::new(T::one(), c[0] * half, T::zero(), c[1] * half);
-        self.orientation = renormalised(correction * turned);
+        self.orientation = renormalised(tilted(c, turned));
         self.error
     }
 
@@ -133,12 +132,23 @@ impl<T: RealField + Copy> Inclination<T> {
 fn step<T: RealField + Copy>(half: Vector3<T>) -> Quaternion<T> {
     let s = half.norm_squared();
     if s > convert(0.16) {
-        return Quaternion::from_imag(half).exp();
+        return *from_half_angle(half).quaternion();
     }
     let c = |denominator: f64| -> T { convert(1.0 / denominator) };
     let w = T::one() - s * (c(2.0) - s * c(24.0));
     let xyz = half * (T::one() - s * (c(6.0) - s * c(120.0)));
     Quaternion::from_parts(w, xyz)
+}
+
+/// (1, c_x/2, 0, c_z/2) q, with the products by zero and one left out.
+fn tilted<T: RealField + Copy>(c: [T; 2], q: Quaternion<T>) -> Quaternion<T> {
+    let [x, z] = c.map(|c| c * convert(0.5));
+    Quaternion::new(
+        q.w - x * q.i - z * q.k,
+        q.i + x * q.w - z * q.j,
+        q.j - x * q.k + z * q.i,
+        q.k + x * q.j + z * q.w,
+    )
 }
 
 /// One step of Newton's iteration for 1/|q|: after one sample the length is off by a few millionths,

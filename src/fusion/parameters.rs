@@ -2,7 +2,7 @@
 //! which would mean another filter at another rate.
 
 use crate::units::Seconds;
-use nalgebra::{ComplexField, RealField, convert};
+use nalgebra::{RealField, convert, try_convert};
 
 /// How often samples come.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,7 +116,18 @@ pub(super) fn size<T: RealField + Copy>(value: T) -> T {
 /// Whole samples in a time, at least one; what is no time is one sample, what is without end the
 /// largest number.
 pub(super) fn samples<T: RealField + Copy>(time: Seconds<T>, period: Seconds<T>) -> u32 {
-    let count: f64 = nalgebra::try_convert(time.0 / period.0).unwrap_or(0.0);
+    let count: f32 = try_convert((time.0 / period.0).round()).unwrap_or(0.0);
     // A cast to an integer saturates, and makes zero of what is not a number.
-    (ComplexField::round(count) as u32).max(1)
+    (count as u32).max(1)
+}
+
+/// A count as a scalar. By way of single precision, which is what the board has, and near enough for a
+/// time.
+pub(super) fn scalar<T: RealField + Copy>(count: u32) -> T {
+    convert(count as f32)
+}
+
+/// 1/n: what the nth of as many has a share of in their mean.
+pub(super) fn share<T: RealField + Copy>(count: u32) -> T {
+    T::one() / scalar(count)
 }
