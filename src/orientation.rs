@@ -42,7 +42,7 @@ pub mod yaw;
 
 pub mod drift;
 
-pub(crate) mod rotation;
+mod rotation;
 
 /// How long a complementary filter trusts the gyro before the accelerometer has had its say: an
 /// error of tilt decays to 1/e in this time.

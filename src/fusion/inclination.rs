@@ -2,8 +2,7 @@
 
 use super::parameters::{Parameters, samples, share, size, weight};
 use crate::orientation::quaternion::trued;
-use crate::orientation::rotation::from_half_angle;
-use crate::orientation::tilt;
+use crate::orientation::{gyro, tilt};
 use crate::units::{AngularRate, METRES_PER_S2_PER_G, Seconds, SpecificForce};
 use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
 
@@ -132,7 +131,8 @@ impl<T: RealField + Copy> Inclination<T> {
 fn step<T: RealField + Copy>(half: Vector3<T>) -> Quaternion<T> {
     let s = half.norm_squared();
     if s > convert(0.16) {
-        return *from_half_angle(half).quaternion();
+        let whole = AngularRate::from_rad_per_s(half + half);
+        return *gyro::step(whole, Seconds(T::one())).quaternion();
     }
     let c = |denominator: f64| -> T { convert(1.0 / denominator) };
     let w = T::one() - s * (c(2.0) - s * c(24.0));
