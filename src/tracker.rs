@@ -19,7 +19,7 @@ use crate::orientation::gyro::DeadReckoning;
 use crate::orientation::{DEFAULT_TIME_CONSTANT, angles};
 use crate::sensor::{Ranges, RawSample, Sample};
 use crate::units::{Seconds, SpecificForce};
-use crate::wire::{self, Line, Tag};
+use crate::wire::{self, Decimals, Line, Tag};
 use estimators::Estimators;
 use nalgebra::UnitQuaternion;
 
@@ -54,6 +54,7 @@ pub struct Health {
 pub struct Tracker {
     ranges: Ranges,
     mode: Mode,
+    decimals: Decimals,
     /// The window the bias came from; none if it was never still.
     rest: Option<Rest>,
     measurement: Option<Measurement>,
@@ -99,6 +100,7 @@ impl Tracker {
         Self {
             ranges,
             mode: Mode::default(),
+            decimals: Decimals::COURSE,
             rest: None,
             measurement: Some(Measurement::new(ranges)),
             bias_unknown: false,
@@ -288,12 +290,16 @@ impl Tracker {
         if !self.every(LINE_EVERY) {
             return;
         }
-        let fused = || wire::quaternion(Tag::Fused, &self.estimators.orientation());
+        let fused = || wire::quaternion(Tag::Fused, &self.estimators.orientation(), self.decimals);
         match self.mode {
             Mode::Info => {}
             Mode::Flat => emit(&wire::flat(&self.flat.roll())),
             Mode::ThreeD => {
-                emit(&wire::quaternion(Tag::Gyro, &self.gyro.orientation()));
+                emit(&wire::quaternion(
+                    Tag::Gyro,
+                    &self.gyro.orientation(),
+                    self.decimals,
+                ));
                 emit(&wire::angles(&angles::pitch_and_roll(reading.force())));
                 emit(&fused());
             }

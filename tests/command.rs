@@ -6,7 +6,7 @@ mod random;
 use random::Random;
 use vrduino::command::request::{Choice, Request, Setting};
 use vrduino::command::{Command, Mode, Parser};
-use vrduino::wire::LINE_LEN;
+use vrduino::wire::{Decimals, LINE_LEN};
 
 #[test]
 fn keys_are_single_bytes_and_others_mean_nothing() {
@@ -72,6 +72,8 @@ fn every_verb_is_understood() {
             "estimator default",
             Request::Estimator(Some(Choice::Default)),
         ),
+        ("decimals", Request::Decimals(None)),
+        ("decimals 5", Request::Decimals(Decimals::new(5))),
         ("compass", Request::Compass(None)),
         ("compass on", Request::Compass(Some(true))),
         ("get notes-alpha", Request::Get(Setting::NotesAlpha)),
@@ -114,6 +116,8 @@ fn a_refusal_names_the_word_and_fits_a_line() {
         ("set notes-alpha 1.001", "1.001: notes-alpha is 0 to 1 "),
         ("set tilt-time 0.05", "0.05: tilt-time is 0.1 to 100 s"),
         ("set field-tolerance 0", "0: field-tolerance is 0.01 to 1 "),
+        ("decimals 2", "2: 3 to 6 is wanted"),
+        ("decimals many", "many: 3 to 6 is wanted"),
         ("bias now", "now: one word too many"),
         ("help me", "me: one word too many"),
         ("caf\u{e9}", "caf??: no such verb, :help lists them"),

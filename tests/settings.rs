@@ -12,7 +12,7 @@ fn every_verb_is_answered() {
     for (line, answer) in [
         (
             ":help",
-            "OK verbs: help version estimator get set defaults compass bias\n",
+            "OK verbs: help version estimator get set defaults compass bias decimals\n",
         ),
         (
             ":version",
@@ -32,6 +32,9 @@ fn every_verb_is_answered() {
         (":get tilt-time", "OK tilt-time 3.0000 s\n"),
         (":estimator", "OK estimator default\n"),
         (":compass", "OK compass on\n"),
+        (":decimals", "OK decimals 3\n"),
+        (":decimals 6", "OK decimals 6\n"),
+        (":decimals 7", "ERR 7: 3 to 6 is wanted\n"),
         (":set lead 101", "ERR 101: lead is 0 to 100 ms\n"),
         (":get lead", "OK lead 0.0000 ms\n"),
         (":fly", "ERR fly: no such verb, :help lists them\n"),

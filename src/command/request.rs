@@ -4,6 +4,7 @@ use core::fmt;
 use heapless::String;
 
 use super::number;
+use crate::wire::Decimals;
 
 /// A line understood.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +23,8 @@ pub enum Request {
     Defaults,
     /// `:compass` asks, `:compass on` and `:compass off` choose.
     Compass(Option<bool>),
+    /// `:decimals` asks, `:decimals 3` to `:decimals 6` choose: of a quaternion in the stream.
+    Decimals(Option<Decimals>),
     /// `:bias`: what the gyro reads at rest, and how that is known.
     Bias,
 }
@@ -221,6 +224,16 @@ pub fn parse(line: &str) -> Result<Request, Refusal> {
             Some("on") => Some(true),
             Some("off") => Some(false),
             Some(other) => return refuse(other, Reason::Wanted("on or off")),
+        }),
+        "decimals" => Request::Decimals(match next() {
+            None => None,
+            Some(word) => {
+                let digit = word.parse().ok().and_then(Decimals::new);
+                let Some(decimals) = digit else {
+                    return refuse(word, Reason::Wanted("3 to 6"));
+                };
+                Some(decimals)
+            }
         }),
         "get" => Request::Get(setting(verb, next())?),
         "set" => {

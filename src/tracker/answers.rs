@@ -13,9 +13,9 @@ impl Tracker {
         let estimators = &mut self.estimators;
         match line {
             Err(refusal) => wire::text(format_args!("ERR {refusal}")),
-            Ok(Request::Help) => {
-                wire::text("OK verbs: help version estimator get set defaults compass bias")
-            }
+            Ok(Request::Help) => wire::text(
+                "OK verbs: help version estimator get set defaults compass bias decimals",
+            ),
             Ok(Request::Version) => wire::text(concat!("OK vrduino ", env!("CARGO_PKG_VERSION"))),
             Ok(Request::Estimator(choice)) => {
                 if let Some(choice) = choice {
@@ -38,6 +38,12 @@ impl Tracker {
                 }
                 let state = if estimators.compass() { "on" } else { "off" };
                 wire::text(format_args!("OK compass {state}"))
+            }
+            Ok(Request::Decimals(decimals)) => {
+                if let Some(decimals) = decimals {
+                    self.decimals = decimals;
+                }
+                wire::text(format_args!("OK decimals {}", self.decimals.get()))
             }
             Ok(Request::Bias) => bias(estimators),
         }
