@@ -6,7 +6,8 @@
 //! | `parameters` | what a person chooses, as times in seconds |
 //! | `inclination` | gyro and accelerometer to a tilt without drift, heading from the gyro alone |
 //! | `rest` | sees when nothing moves |
-//! | `bias` | what the gyro reads when nothing turns: a mean at rest, an integral on the move |
+//! | `bias` | what the gyro reads when nothing turns: a mean at rest |
+//! | `integral` | and on the move, what the errors of tilt and heading say of it |
 //! | `disturbance` | tells the field of the earth from that of a magnet |
 //! | `heading` | a turn about the vertical that brings north to north |
 //!
@@ -25,6 +26,7 @@ mod bias;
 mod disturbance;
 mod heading;
 mod inclination;
+mod integral;
 mod parameters;
 mod rest;
 
@@ -38,6 +40,7 @@ use crate::sensor::Sample;
 use crate::units::{AngularRate, MagneticField, Seconds, SpecificForce};
 use heading::Heading;
 use inclination::Inclination;
+use integral::Integral;
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
 use rest::Rest;
 
@@ -50,6 +53,7 @@ pub struct Fusion<T: RealField> {
     inclination: Inclination<T>,
     rest: Rest<T>,
     bias: Bias<T>,
+    integral: Integral<T>,
     heading: Heading<T>,
     /// The rate of the last sample, without bias: the lead goes on with it.
     rate: AngularRate<T>,
@@ -66,6 +70,7 @@ impl<T: RealField + Copy> Fusion<T> {
             inclination: Inclination::new(parameters, rates.sample),
             rest: Rest::new(parameters, rates.sample),
             bias: Bias::new(parameters, rates),
+            integral: Integral::new(parameters, rates),
             heading: Heading::new(parameters, rates.field),
             rate: AngularRate::zero(),
             started: false,
@@ -79,6 +84,7 @@ impl<T: RealField + Copy> Fusion<T> {
         self.inclination.tune(parameters, self.rates.sample);
         self.rest.tune(parameters, self.rates.sample);
         self.bias.tune(parameters, self.rates);
+        self.integral.tune(parameters, self.rates);
         self.heading.tune(parameters, self.rates.field);
     }
 
@@ -105,7 +111,7 @@ impl<T: RealField + Copy> Fusion<T> {
             self.bias.moves();
         }
         self.rate = AngularRate::from_rad_per_s(rate - self.bias.rad_per_s());
-        let tilt_error = self.inclination.update(self.rate, sample.force);
+        self.inclination.update(self.rate, sample.force);
         let heading_error = field
             .map(MagneticField::microtesla)
             .filter(|&field| within(field, 100_000.0))
@@ -114,10 +120,11 @@ impl<T: RealField + Copy> Fusion<T> {
                 self.heading
                     .update(self.inclination.in_world(field), turning)
             });
-        if matches!(motion, Motion::Moving { .. })
-            && let Some(error) = self.bias.integrals(tilt_error, heading_error)
-        {
-            self.bias.shift(self.inclination.in_body(error));
+        let error = self
+            .integral
+            .update(&self.inclination, heading_error, self.bias.source());
+        if let (Motion::Moving { .. }, Some(error)) = (motion, error) {
+            self.bias.shift(error);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Tilt without drift from gyro and accelerometer; the heading is the gyro's.
 
-use super::parameters::{Parameters, samples, share, size, weight};
+use super::parameters::{Parameters, low_pass_weight_of, samples, share, size, weight};
 use crate::orientation::quaternion::trued;
 use crate::orientation::{gyro, tilt};
 use crate::units::{AngularRate, METRES_PER_S2_PER_G, Seconds, SpecificForce};
@@ -36,7 +36,7 @@ impl<T: RealField + Copy> Coefficients<T> {
         let twice_damping = parameters.damping * convert(2.0);
         Self {
             half_period: size(period.0) * convert(0.5),
-            low_pass: weight(-(-twice_damping * natural * period.0).exp_m1()),
+            low_pass: low_pass_weight_of(parameters, period),
             correction: weight(natural * period.0 / twice_damping),
             per_g: convert(1.0 / METRES_PER_S2_PER_G),
             start: samples(parameters.start_time, period),
@@ -58,14 +58,13 @@ impl<T: RealField + Copy> Inclination<T> {
         self.coefficients = Coefficients::new(parameters, period);
     }
 
-    /// One sample, body frame, bias removed. Returns b, radians about x and z of the world: how far
-    /// from level the last seconds were.
+    /// One sample, body frame, bias removed.
     ///
     /// 1. q ← q exp(ωΔt/2) (eq. 17 and 18 of the course notes);
     /// 2. a ← q f q⁻¹/g, *not* normalised, and its error e = a × y = (−a_z, 0, a_x);
-    /// 3. b ← b + k_l(e − b), and of that c = k_c b; in the first second c = e/n instead;
+    /// 3. b ← b + k_l(e − b), and of that c = k_c b; in the first second c = e/n instead, and b is 0;
     /// 4. q ← (1, c/2) q.
-    pub fn update(&mut self, rate: AngularRate<T>, force: SpecificForce<T>) -> [T; 2] {
+    pub fn update(&mut self, rate: AngularRate<T>, force: SpecificForce<T>) {
         let Coefficients {
             half_period,
             low_pass,
@@ -77,22 +76,31 @@ impl<T: RealField + Copy> Inclination<T> {
         let q_omega = UnitQuaternion::new_unchecked(turned);
         let up = q_omega * force.m_per_s2() * per_g;
         let e = [-up.z, up.x];
-        self.error = [0, 1].map(|i| self.error[i] + low_pass * (e[i] - self.error[i]));
         let c = if self.age < start {
             self.age += 1;
             let share = share(self.age);
             // A knock in the first samples must not turn the picture over.
             e.map(|e| e.clamp(-T::one(), T::one()) * share)
         } else {
+            self.error = [0, 1].map(|i| self.error[i] + low_pass * (e[i] - self.error[i]));
             self.error.map(|error| error * correction)
         };
         self.orientation = renormalised(tilted(c, turned));
-        self.error
     }
 
     /// Body to world.
     pub fn orientation(&self) -> UnitQuaternion<T> {
         self.orientation
+    }
+
+    /// b, radians about x and z of the world: how far from level the last seconds were.
+    pub fn error(&self) -> [T; 2] {
+        self.error
+    }
+
+    /// Whether the start is over, so that an error is the gyro's and not the start's.
+    pub fn is_settled(&self) -> bool {
+        self.age >= self.coefficients.start
     }
 
     /// A vector of the body as seen from the world.

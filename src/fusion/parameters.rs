@@ -27,7 +27,7 @@ pub struct Parameters<T> {
     pub lead: Seconds<T>,
     /// The force averaged at the start, weighing every sample alike. 1 s.
     pub start_time: Seconds<T>,
-    /// Gain of the integral of the tilt's error into the bias, 1/s². 0.005.
+    /// Gain of the integral of the tilt's error into the bias, 1/s². 0.01.
     pub tilt_integral: T,
     /// Until the first rest the gain is `time/(1 + t)` times as large, down to the gain itself. 80 s.
     pub tilt_integral_start: Seconds<T>,
@@ -71,7 +71,7 @@ impl<T: RealField + Copy> Default for Parameters<T> {
             damping: convert(0.5),
             lead: seconds(0.0),
             start_time: seconds(1.0),
-            tilt_integral: convert(0.005),
+            tilt_integral: convert(0.01),
             tilt_integral_start: seconds(80.0),
             rest_filter_time: seconds(0.5),
             rest_time: seconds(1.5),
@@ -93,6 +93,16 @@ impl<T: RealField + Copy> Default for Parameters<T> {
 /// 1 − e^(−Δt/τ), the share of a new sample in a low-pass of first order; from 0 to 1 for any times.
 pub(super) fn low_pass_weight<T: RealField + Copy>(time: Seconds<T>, period: Seconds<T>) -> T {
     weight(-(-period.0 / time.0).exp_m1())
+}
+
+/// The share of the newest in the low-pass of the tilt's error, 1 − exp(−2ζω₀Δt) with ω₀ = √2/τ.
+pub(super) fn low_pass_weight_of<T: RealField + Copy>(
+    parameters: &Parameters<T>,
+    period: Seconds<T>,
+) -> T {
+    let twice_damping = parameters.damping * convert(2.0);
+    let time = parameters.tilt_time.0 / (twice_damping * convert(core::f64::consts::SQRT_2));
+    low_pass_weight(Seconds(time), period)
 }
 
 /// A weight of no meaning is the nearer end; one that is not a number is none.
