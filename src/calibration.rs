@@ -16,6 +16,12 @@
 //! integrating that is most of a tracker's drift. So the board is watched for a second; if it
 //! provably lay still, the mean of the gyro *is* the bias. The course's firmware takes the mean
 //! without looking; hold the board in the hand at start-up and it drifts for the whole session.
+//!
+//! [`six_positions`]: crate::calibration::six_positions
+//! [`ellipsoid`]: crate::calibration::ellipsoid
+//! [`coverage`]: crate::calibration::coverage
+//! [`Correction`]: crate::calibration::Correction
+//! [`record`]: crate::calibration::record
 
 use crate::sensor::{self, Ranges, RawSample, Sample};
 use crate::units::{AngularRate, SpecificForce};

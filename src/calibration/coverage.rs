@@ -18,20 +18,15 @@ const SAMPLES_PER_PLACE: u8 = 40;
 /// room left; over a whole sphere that ends at 12° to 17°.
 const FIRST_SPACING: i32 = 16;
 
-/// A direction counts as seen if something was seen within so many degrees of it: the places' spacing
-/// and half a cell of the map.
-const REACH_DEGREES: f64 = 20.0;
+/// A direction counts as seen if something was seen within 20° of it, of which this is the cosine: the
+/// places' spacing and some more.
+const REACH: f64 = 0.939_692_620_785_908_4;
 
 /// Directions of the map: six faces of a cube, four by four on each.
 pub const DIRECTIONS: usize = 96;
 
 /// tan 11.25° and tan 33.75°: cells of equal angle on a cube's face.
-const STEPS: [f64; 4] = [
-    -0.668_178_637_919_298_9,
-    -0.198_912_367_379_658,
-    0.198_912_367_379_658,
-    0.668_178_637_919_298_9,
-];
+const STEPS: [f32; 4] = [-0.668_178_6, -0.198_912_37, 0.198_912_37, 0.668_178_6];
 
 /// How much of the sphere was seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +42,7 @@ pub struct Coverage<T: RealField + Copy> {
 
 /// Direction number `index` of the map: a unit vector, body frame. Beyond [`DIRECTIONS`] they repeat.
 pub fn direction<T: RealField + Copy>(index: usize) -> Vector3<T> {
-    let step = |number: usize| convert::<f64, T>(STEPS[number % 4]);
+    let step = |number: usize| convert::<f32, T>(STEPS[number % 4]);
     let (face, u, v) = (index / 16 % 6, step(index / 4), step(index));
     let mut direction = Vector3::zeros();
     direction[face / 2] = if face.is_multiple_of(2) {
@@ -161,7 +156,7 @@ impl Places {
                 *nearest = nearest.max(direction(index).dot(&seen));
             }
         }
-        let reach = Angle::<T>::from_degrees(convert(REACH_DEGREES)).rad().cos();
+        let reach = convert(REACH);
         let seen = nearest.iter().filter(|cosine| **cosine >= reach).count();
         let hole = (0..DIRECTIONS).fold(0, |hole, index| {
             if nearest[index] < nearest[hole] {

@@ -21,14 +21,17 @@
 //! A sphere has no scale either: A has the determinant 1, so the field's strength is the mean of what
 //! the axes report.
 
-use super::coverage::{Coverage, Places, Visit};
+use super::coverage::{Places, Visit};
 use super::moments::{self, Moments};
 use super::quadric;
 use crate::sensor::magnetometer::FieldError;
 use crate::sensor::measurement::Calibration;
-use crate::units::MagneticField;
-use core::fmt;
+use crate::units::{Angle, MagneticField};
 use nalgebra::{Matrix3, RealField, Vector3, convert, convert_unchecked};
+
+mod refusal;
+
+pub use refusal::Refusal;
 
 /// Whole units per microtesla. A count of the AK8963 is 0.15 µT, and its noise some 0.6.
 const UNITS_PER_MICROTESLA: f64 = 4.0;
@@ -36,10 +39,11 @@ const UNITS_PER_MICROTESLA: f64 = 4.0;
 /// Samples that count before a fit is tried: nine unknowns, and noise that should average.
 const FEWEST: u32 = 200;
 
-/// Least share of the sphere, and largest hole. With a hole of 60° and 0.6 µT of noise the centre is
-/// still right to 0.5 µT (tests).
+/// Least share of the sphere, and largest hole. With 0.6 µT of noise the centre would be right to
+/// 0.5 µT beside a hole of 55° (tests); in a room, where the field varies, a hole costs more. A person
+/// who turns a board for two minutes leaves 20° to 50° (recorded motions).
 const LEAST_SHARE: f64 = 0.6;
-const LARGEST_HOLE_DEGREES: f64 = 60.0;
+const LARGEST_HOLE_DEGREES: f64 = 50.0;
 
 /// An axis that varies less than this (µT, one standard deviation) reads nothing.
 const DEAD_AXIS: f64 = 2.0;
@@ -84,7 +88,7 @@ pub struct Magnetometer<T: RealField + Copy> {
     /// The share of the sphere that was seen, 0 to 1.
     pub coverage: T,
     /// The largest hole in it.
-    pub largest_hole: crate::units::Angle<T>,
+    pub largest_hole: Angle<T>,
     /// Temperature of the die, °C.
     pub temperature_celsius: f32,
 }
@@ -96,104 +100,6 @@ impl<T: RealField + Copy> Magnetometer<T> {
         Calibration::new(self.soft_iron, MagneticField::from_microtesla(offset))
     }
 }
-
-/// Why there is no result.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Refusal<T: RealField + Copy> {
-    /// The field was too strong for the sensor, or 500 µT from where it began, so many times.
-    Magnet {
-        /// Samples.
-        samples: u32,
-    },
-    /// So many fields were no numbers, or counts that the sensor cannot report.
-    Unreadable {
-        /// Samples.
-        samples: u32,
-    },
-    /// Too few samples in different directions.
-    TooFew {
-        /// Those that count.
-        samples: u32,
-        /// Those that are needed.
-        needed: u32,
-    },
-    /// This axis (0, 1, 2) hardly changes, though the others do.
-    DeadAxis {
-        /// x, y, z.
-        axis: usize,
-    },
-    /// All directions lie in one plane: the board was turned about one axis only.
-    Flat,
-    /// The points determine no ellipsoid.
-    NoEllipsoid,
-    /// Too little of the sphere was seen.
-    Coverage(Coverage<T>),
-    /// The field is not that of the earth, µT.
-    Strength(T),
-    /// The longest axis of the ellipsoid over its shortest.
-    Lopsided(T),
-    /// The corrected field's length varies by this much, per cent.
-    Disturbed(T),
-}
-
-impl<T: RealField + Copy> fmt::Display for Refusal<T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Magnet { samples } => write!(
-                f,
-                "{samples} samples beside a magnet: move away from magnets and start again"
-            ),
-            Self::Unreadable { samples } => write!(
-                f,
-                "{samples} samples were no field: check the wiring or the file and start again"
-            ),
-            Self::TooFew { samples, needed } => write!(
-                f,
-                "{samples} samples count, {needed} needed: turn the board every way"
-            ),
-            Self::DeadAxis { axis } => {
-                let axis = ["x", "y", "z"].get(*axis).copied().unwrap_or("?");
-                write!(
-                    f,
-                    "{axis} does not change: turn the board about all axes, or the part is broken"
-                )
-            }
-            Self::Flat => f.write_str("turned about one axis only: turn the board every way"),
-            Self::NoEllipsoid => f.write_str(
-                "no ellipsoid fits: move away from iron, and turn the board slowly every way",
-            ),
-            Self::Coverage(coverage) => {
-                let axis = coverage.hole.iamax();
-                let sign = if coverage.hole[axis] < T::zero() {
-                    '-'
-                } else {
-                    '+'
-                };
-                write!(
-                    f,
-                    "{:.0} % of all directions seen, largest hole {:.0} degrees: turn the board until the field comes from {sign}{}",
-                    coverage.share * convert(100.0),
-                    coverage.largest_hole.degrees(),
-                    ['x', 'y', 'z'][axis]
-                )
-            }
-            Self::Strength(microtesla) => write!(
-                f,
-                "{microtesla:.0} uT is not the earth's field ({WEAKEST} to {STRONGEST}): move away from iron, check the scale"
-            ),
-            Self::Lopsided(ratio) => write!(
-                f,
-                "one axis reads {ratio:.2} times another: take iron off the board, or the part is broken"
-            ),
-            Self::Disturbed(percent) => write!(
-                f,
-                "field varies by {percent:.1} %, {LARGEST_ERROR_PERCENT} allowed: turn the board on the spot, away from iron"
-            ),
-        }
-    }
-}
-
-impl<T: RealField + Copy> core::error::Error for Refusal<T> {}
 
 /// The procedure: fields in, an ellipsoid out. 2.6 kB, and no floating point in its state.
 #[derive(Clone, Debug)]
@@ -306,7 +212,9 @@ impl EllipsoidFit {
         }
         let microtesla: T = convert(1.0 / UNITS_PER_MICROTESLA);
         // The geometric mean of the axes: that of a sphere of the same volume.
-        let radius = T::one() / ellipsoid.to_unit_sphere.determinant().cbrt();
+        // By logarithms, for the cube root goes through double precision.
+        let volume = ellipsoid.to_unit_sphere.determinant();
+        let radius = (-volume.ln() / convert(3.0)).exp();
         let strength_microtesla = radius * microtesla;
         if !(convert(WEAKEST)..=convert(STRONGEST)).contains(&strength_microtesla) {
             return Err(Refusal::Strength(strength_microtesla));
