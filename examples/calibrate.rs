@@ -193,6 +193,7 @@ fn cross(v: &Vector3<f32>, size: f64) -> [[f64; 2]; 6] {
 fn recorded(path: &std::path::Path) -> Result<Vec<Heard>, motion::MotionError> {
     let motion = motion::open(path)?;
     println!("{}", motion.describe());
+    println!("a recording has no temperature: 21 °C stands for it");
     let count = (motion.duration().unwrap_or(60.0) * RATE) as usize;
     let heard = (0..count).map(|k| {
         let instant = motion.at(k as f64 / RATE);

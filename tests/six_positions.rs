@@ -353,3 +353,9 @@ fn whatever_is_placed_there_is_no_panic_and_only_finite_results() {
         }
     }
 }
+
+#[test]
+fn the_procedure_stays_small() {
+    let size = size_of::<SixPositions<f32>>();
+    assert!(size <= 1024, "{size}");
+}
