@@ -60,7 +60,7 @@ pub fn direction<T: RealField + Copy>(index: usize) -> Vector3<T> {
 pub(super) struct Places {
     places: Vec<Place, PLACES>,
     /// Square of the least distance.
-    spacing: i64,
+    spacing: i32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -71,9 +71,10 @@ struct Place {
 }
 
 impl Place {
-    fn distance(&self, other: [i16; 3]) -> i64 {
+    /// Squared; at most 3 · 2²⁴.
+    fn distance(&self, other: [i16; 3]) -> i32 {
         let squares = self.at.iter().zip(other).map(|(a, b)| {
-            let difference = i64::from(*a) - i64::from(b);
+            let difference = i32::from(*a) - i32::from(b);
             difference * difference
         });
         squares.sum()
@@ -95,7 +96,7 @@ impl Places {
     pub(super) const fn new() -> Self {
         Self {
             places: Vec::new(),
-            spacing: (FIRST_SPACING * FIRST_SPACING) as i64,
+            spacing: FIRST_SPACING * FIRST_SPACING,
         }
     }
 
