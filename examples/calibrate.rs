@@ -150,7 +150,7 @@ fn print_magnetometer(result: &Magnetometer<f32>) {
 fn picture(
     fields: &[MagneticField<f32>],
     result: &Result<Magnetometer<f32>, ellipsoid::Refusal<f32>>,
-) -> Picture {
+) -> Picture<'static> {
     let correct = |field: &MagneticField<f32>| match result {
         Ok(result) => result.calibration().corrected(*field).microtesla(),
         Err(_) => field.microtesla(),
