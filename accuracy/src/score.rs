@@ -40,18 +40,19 @@ impl Score {
         let mut count = 0.0;
         for (index, truth) in trial.scored_references() {
             let e = error(&orientations[index], &truth);
-            let parts = [
-                inclination(e),
-                heading(e),
-                total(e),
-                total(turned(e, -offset)),
-            ];
+            // min and max pass over what is not a number, so it is looked for first.
+            let parts = if e.iter().all(|part| part.is_finite()) {
+                [
+                    inclination(e),
+                    heading(e),
+                    total(e),
+                    total(turned(e, -offset)),
+                ]
+            } else {
+                [f64::INFINITY; 4]
+            };
             for (sum, part) in squares.iter_mut().zip(parts) {
-                *sum += if part.is_finite() {
-                    part * part
-                } else {
-                    f64::INFINITY
-                };
+                *sum += part * part;
             }
             count += 1.0;
         }
