@@ -222,6 +222,14 @@ impl I2c {
         self.get()
     }
 
+    /// The last byte has come in and was refused: takes it without giving the bus away, for another
+    /// address to follow at once.
+    pub(super) fn receive_last_and_hold(&mut self) -> u8 {
+        // Turning back to sending keeps the bus without clocking another byte.
+        self.control(IICEN | MST | TX);
+        self.get()
+    }
+
     /// STOP.
     pub(super) fn stop(&mut self) {
         self.control(IICEN);
@@ -321,13 +329,11 @@ impl I2c {
                             Err(error) => return Err(error),
                         }
                         to_read -= 1;
-                        if to_read == 0 && !ends_here {
-                            // Turning back to sending keeps the bus without clocking another byte.
-                            self.control(IICEN | MST | TX);
-                            *byte = self.get();
+                        *byte = if to_read == 0 && !ends_here {
+                            self.receive_last_and_hold()
                         } else {
-                            *byte = self.receive_next(to_read, false);
-                        }
+                            self.receive_next(to_read, false)
+                        };
                     }
                 }
             }

@@ -35,6 +35,7 @@ fn agrees_with_library(run: &mut Run) {
     for burst in &bursts {
         tracker.update(
             &RawSample::from_burst(&burst.bytes),
+            None,
             &Health::default(),
             &mut |line| expected.extend(quaternion(line.trim_end())),
         );
