@@ -239,6 +239,7 @@ fn magnitude_in_steps(value: f32, per_one: u64) -> u64 {
 }
 
 /// Decimal digits, padded with zeros on the left to at least `width`.
+#[inline(never)] // with its loops unrolled, half a kilobyte for every place it is called from
 fn push_digits(line: &mut Line, mut value: u64, width: usize) {
     let mut digits = [b'0'; 20];
     let mut used = 0;

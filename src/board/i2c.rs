@@ -292,6 +292,7 @@ impl I2c {
 
     /// Operations of one kind that follow each other are one transfer; between the two kinds comes a
     /// repeated START (the contract of [`embedded_hal::i2c::I2c::transaction`]).
+    #[inline(never)] // the set-up has forty transfers, and this would be in the image as often
     fn run(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Error> {
         let mut writing = None;
         let mut to_read = 0;

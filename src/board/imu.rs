@@ -20,7 +20,7 @@ use super::i2c::{Error, I2c};
 use super::watchdog::Watchdog;
 use sampling::Samples;
 
-pub use sampling::{Counts, counts};
+pub use sampling::counts;
 
 /// The sensor may take 100 ms from power-on to its first answer (data sheet, table 3).
 const START_UP_TRIES: u32 = 12;
