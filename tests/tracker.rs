@@ -2,7 +2,6 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use vrduino::command::Parser;
-use vrduino::sensor::magnetometer::{RawField, Resolution, SensitivityAdjustment};
 use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample};
 use vrduino::tracker::{Health, STILL_DEADLINE, Tracker};
 
@@ -23,8 +22,6 @@ const LEVEL: RawSample = RawSample {
 struct Bench {
     tracker: Tracker,
     health: Health,
-    /// Comes with every tenth sample.
-    field: Option<RawField>,
     /// Every line with the number of the sample that led to it, from 1.
     lines: Vec<(u32, String)>,
     samples: u32,
@@ -35,7 +32,6 @@ impl Bench {
         Self {
             tracker: Tracker::new(RANGES),
             health: Health::default(),
-            field: None,
             lines: Vec::new(),
             samples: 0,
         }
@@ -53,9 +49,8 @@ impl Bench {
         for i in 0..samples {
             self.samples += 1;
             let (at, lines) = (self.samples, &mut self.lines);
-            let field = self.field.filter(|_| i % 10 == 3);
             self.tracker
-                .update(&raw(i), field, &self.health, &mut |line| {
+                .update(&raw(i), None, &self.health, &mut |line| {
                     lines.push((at, line.to_string()));
                 });
         }
@@ -351,67 +346,6 @@ fn mode_0_tells_once_a_second_what_the_board_knows() {
     assert_eq!(bench.texts()[..10], second);
     assert_eq!(bench.texts()[16], "REPEATED: 20\n");
     assert_eq!(bench.lines.len(), 20);
-}
-
-const FIELD: RawField = RawField {
-    counts: [100, 200, -300],
-    resolution: Resolution::Bits16,
-    overflow: false,
-};
-const TOO_STRONG: RawField = RawField {
-    overflow: true,
-    ..FIELD
-};
-
-/// What the INFO block says of the field after `seconds`.
-fn fields(bench: &mut Bench, seconds: u32) -> Vec<String> {
-    bench.lines.clear();
-    bench.feed(1000 * seconds, |_| LEVEL);
-    let lines = bench.tagged("Field: ").into_iter();
-    lines.map(str::to_owned).collect()
-}
-
-#[test]
-fn the_field_is_shown_in_the_bodys_axes_adjusted_and_with_its_rate() {
-    let mut bench = Bench::started();
-    bench.press(b'0');
-    bench.field = Some(FIELD);
-    assert_eq!(fields(&mut bench, 1), ["Field: none\n"], "not set up");
-    let asa = SensitivityAdjustment::from_fuse_rom([128, 192, 64]);
-    bench.tracker.set_magnetometer(Some(asa));
-    // y · 1.25, x, -z · 0.75, of 0.15 µT each.
-    let expected = "Field: 37.500 15.000 33.750 uT (100 Hz)\n";
-    assert_eq!(fields(&mut bench, 2), [expected, expected]);
-    bench.field = None;
-    assert_eq!(fields(&mut bench, 1), ["Field: none\n"], "it has stopped");
-    bench.field = Some(FIELD);
-    bench.tracker.set_magnetometer(None);
-    assert_eq!(fields(&mut bench, 1), ["Field: none\n"]);
-}
-
-#[test]
-fn a_field_that_is_too_strong_is_warned_of_once_and_never_shown() {
-    let warning = "warning: magnetic field of 4912 uT or more: move the board away from magnets\n";
-    let mut bench = Bench::started();
-    bench.press(b'0');
-    let adjustment = Some(SensitivityAdjustment::NONE);
-    bench.tracker.set_magnetometer(adjustment);
-    bench.field = Some(TOO_STRONG);
-    let shown = fields(&mut bench, 3);
-    assert_eq!(bench.tagged("warning"), [warning]);
-    assert!(shown.iter().all(|line| line.contains("4912 uT or more")));
-    // Half a second without is not worth another.
-    bench.field = Some(FIELD);
-    bench.feed(500, |_| LEVEL);
-    bench.field = Some(TOO_STRONG);
-    fields(&mut bench, 1);
-    assert!(bench.tagged("warning").is_empty());
-    // A whole one is.
-    bench.field = Some(FIELD);
-    bench.feed(1000, |_| LEVEL);
-    bench.field = Some(TOO_STRONG);
-    fields(&mut bench, 1);
-    assert_eq!(bench.tagged("warning"), [warning]);
 }
 
 #[test]

@@ -5,7 +5,7 @@
 //! master can copy its registers behind those of the gyro at every sample. Such a copy is taken by
 //! the sensor's clock and read by the board's, so a DRDY in it is seen twice or not at all; and the
 //! magnetometer skips a measurement that ends while its data is being read (data sheet, section
-//! 6.4.3), which at a thousand blind reads a second is one in five. So the bypass is used: it
+//! 6.4.3), which at a thousand blind reads a second is one in six. So the bypass is used: it
 //! joins the two buses, the board asks the magnetometer itself, reads data only after DRDY, and
 //! DRDY is cleared by that very read. None is lost, and none is new twice.
 

@@ -3,7 +3,7 @@
 //! millisecond.
 //!
 //! The magnetometer is asked behind the burst, on the same hold of the bus, so that it delays no
-//! sample: 0.1 ms for its status, 0.27 ms for a measurement. What it says goes out with the next
+//! sample: 0.11 ms for its status, 0.29 ms for a measurement. What it says goes out with the next
 //! sample.
 
 use core::cell::RefCell;

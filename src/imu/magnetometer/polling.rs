@@ -3,8 +3,8 @@
 //! once a sample, and for the measurement with the sample after it has said that it is.
 //!
 //! Most bursts of the IMU are followed by nothing, one in ten by a measurement, and about one or two
-//! by a question. A measurement is up to 2 ms old when it comes in, which is little beside the 7 ms
-//! that it takes, and it would be overwritten after 10.
+//! by a question. A measurement is up to 3 ms old when the next sample brings it, beside the 7 ms
+//! that it takes; it would be overwritten after 10.
 
 use crate::sensor::magnetometer::{self, RawField};
 use core::fmt;
