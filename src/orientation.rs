@@ -52,8 +52,8 @@ mod rotation;
 /// eq. 24, that α “defines how aggressively tilt correction is being applied”, describes 1 − α:
 /// with α = 1 there is none.)
 ///
-/// A weight outside 0 to 1 has no meaning, and one that is not a number none either: the filter
-/// takes the nearer end, or believes the gyro.
+/// A weight outside 0 to 1 has no meaning, and one that is not a number none either: the nearer end
+/// is taken for the first, the gyro alone for the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeConstant<T>(Seconds<T>);
 
@@ -71,9 +71,14 @@ impl<T: RealField + Copy> TimeConstant<T> {
         Self(time)
     }
 
-    /// From the notes' α, the weight of the gyro in one sample.
+    /// From the notes' α, the weight of the gyro in one sample. Infinite for the gyro alone, α = 1.
     pub fn from_gyro_weight(alpha: T, sample_period: Seconds<T>) -> Self {
-        Self(Seconds(sample_period.0 * alpha / (T::one() - alpha)))
+        // Not a number is not below one either.
+        Self(Seconds(if alpha < T::one() {
+            sample_period.0 * alpha.max(T::zero()) / (T::one() - alpha)
+        } else {
+            T::one() / T::zero()
+        }))
     }
 
     /// τ.

@@ -48,7 +48,7 @@ const RAW_DATA_READY: u8 = 1 << 0;
 /// −2000.06 °/s, outside the range it is the end of.
 const COUNTS_PER_RANGE: f64 = 32768.0;
 
-/// One sample in counts, body frame.
+/// One sample in counts, body frame: raw_sensor_value of eq. 5, −2¹⁵ to 2¹⁵ − 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RawSample {
     /// Angular rate about x, y, z.
@@ -93,7 +93,7 @@ impl RawSample {
     /// Temperature of the die in °C: counts / 333.87 + 21 (register map, registers 65 and 66;
     /// data sheet, table 3). The counts are signed: below 21 °C they are negative.
     pub fn temperature_celsius(&self) -> f32 {
-        f32::from(self.temperature) / 333.87 + 21.0
+        celsius(f32::from(self.temperature))
     }
 
     /// True if any axis stands at the end of its range: the true value may lie beyond it.
@@ -105,7 +105,7 @@ impl RawSample {
     }
 }
 
-/// Full scale of the gyro, GYRO_FS_SEL in the order of the register map.
+/// Full scale of the gyro (course notes, section 2), GYRO_FS_SEL in the order of the register map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GyroRange {
     /// ±250 °/s, 131 counts per °/s.
@@ -137,7 +137,8 @@ impl GyroRange {
     }
 }
 
-/// Full scale of the accelerometer, ACCEL_FS_SEL in the order of the register map.
+/// Full scale of the accelerometer (course notes, section 2), ACCEL_FS_SEL in the order of the
+/// register map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AccelRange {
     /// ±2 g, 16384 counts per g.
@@ -179,7 +180,8 @@ pub struct Ranges {
 }
 
 impl Ranges {
-    /// Eq. 5 with the data sheet's divisor.
+    /// Eq. 5 with the data sheet's divisor: rad/s and m/s², body frame. Every count has a value; the
+    /// one at an end of the range may stand for more ([`RawSample::clipped`]).
     pub fn sample<T: RealField + Copy>(self, raw: &RawSample) -> Sample<T> {
         let vector = |counts: [i16; 3]| Vector3::from(counts.map(|c| convert(f32::from(c))));
         self.scaled(vector(raw.gyro), vector(raw.accel))
@@ -224,6 +226,11 @@ pub struct Sample<T> {
     pub rate: AngularRate<T>,
     /// Eq. 2: gravity's reaction plus acceleration plus noise.
     pub force: SpecificForce<T>,
+}
+
+/// The die's temperature for counts that need not be whole, such as the mean of many samples.
+pub(crate) fn celsius(counts: f32) -> f32 {
+    counts / 333.87 + 21.0
 }
 
 /// The nearest whole count that 16 bits hold. Zero for what is not a number.

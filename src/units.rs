@@ -1,6 +1,9 @@
 //! Each type here wraps the value in the unit the equations use; constructors and accessors name
 //! the unit at the door. The vectors are in whatever frame the surrounding type says: readings of
 //! the sensor are in the body frame.
+//!
+//! A conversion is one multiplication: any number has a value in the other unit, and what is not
+//! finite stays so. Whoever computes with it says what becomes of that.
 
 use nalgebra::{RealField, Vector3, convert};
 
@@ -13,15 +16,15 @@ pub const METRES_PER_S2_PER_G: f64 = 9.81;
 pub(crate) const RADIANS_PER_DEGREE: f64 = core::f64::consts::PI / 180.0;
 const DEGREES_PER_RADIAN: f64 = 180.0 / core::f64::consts::PI;
 
-/// A span of time.
+/// A span of time, in seconds: Δt of the equations.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Seconds<T>(pub T);
 
-/// A length, in the unit the course notes give the eyes' distance in.
+/// A length in millimetres, the unit the course notes give the eyes' distance in (algorithm 2).
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Millimetres<T>(pub T);
 
-/// An angle.
+/// An angle, kept in radians and as it is given: no turn is taken off.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Angle<T>(T);
 
@@ -45,9 +48,19 @@ impl<T: RealField + Copy> Angle<T> {
     pub fn degrees(self) -> T {
         self.0 * convert(DEGREES_PER_RADIAN)
     }
+
+    /// The same angle; zero if it is not finite.
+    pub(crate) fn finite_or_zero(self) -> Self {
+        Self(if self.0.is_finite() {
+            self.0
+        } else {
+            T::zero()
+        })
+    }
 }
 
-/// How fast something turns, about each of three axes.
+/// How fast something turns about each of three axes, kept in rad/s: ω of the course notes' eq. 1
+/// and 17.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngularRate<T>(Vector3<T>);
 
@@ -78,7 +91,8 @@ impl<T: RealField + Copy> AngularRate<T> {
     }
 }
 
-/// What an accelerometer measures: force per mass, that is acceleration minus gravity.
+/// What an accelerometer measures: force per mass, that is acceleration minus gravity, kept in m/s²:
+/// a of the course notes' eq. 2.
 ///
 /// At rest it points *up*, away from the pull of the earth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,7 +123,8 @@ impl<T: RealField + Copy> SpecificForce<T> {
 /// 1 G is 100 µT exactly: 1 T is 10⁴ G.
 pub const MICROTESLA_PER_GAUSS: f64 = 100.0;
 
-/// What a magnetometer measures: the magnetic flux density along each of three axes.
+/// What a magnetometer measures: the magnetic flux density along each of three axes, kept in µT. The
+/// blog post's m and the gyroscope-emulation paper's B_d, of which they use the direction only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MagneticField<T>(Vector3<T>);
 

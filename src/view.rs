@@ -44,7 +44,7 @@ pub mod viewer;
 
 pub mod projection;
 
-/// Why there is no view.
+/// Why there is no view, or no projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewError {
     /// The quaternion is zero or not finite.

@@ -33,7 +33,8 @@ fn tracker(adjustment: Option<SensitivityAdjustment>) -> Tracker {
     let mut tracker = Tracker::new(RANGES);
     tracker.set_magnetometer(adjustment);
     feed(&mut tracker, 1.0, None);
-    tracker.command(Parser::new().push(b'0').expect("a key with a meaning"));
+    let key = Parser::new().push(b'0').expect("a key with a meaning");
+    tracker.command(key, &mut |_| {});
     tracker
 }
 

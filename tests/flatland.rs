@@ -1,7 +1,10 @@
 //! One angle (course notes, section 3): eq. 6 to 9, their corners, and how far they go astray.
 
+mod matrices;
+
 mod random;
 
+use matrices::larger;
 use nalgebra::{RealField, Vector3, convert};
 use random::Random;
 use std::f64::consts::{PI, TAU};
@@ -62,7 +65,7 @@ fn deviation_from_the_notes<T: RealField + Copy>() -> f64 {
                 (roll.accelerometer, truth),
                 (roll.fused, fused),
             ] {
-                worst = worst.max((as_f64(is) - expected).abs());
+                worst = larger(worst, (as_f64(is) - expected).abs());
             }
         }
     }
@@ -100,7 +103,7 @@ fn flatland_blends_across_the_seam() {
 fn the_fused_angle_lies_between_its_two_sources_at_every_angle() {
     // The same blend as unit vectors: independent of seams. The short arc from one to the other.
     let mut random = Random(1);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let (start, shown) = (random.between(-PI, PI), random.between(-PI, PI));
         let (alpha, turned) = (random.between(0.0, 1.0), random.between(-0.5, 0.5));
         let mut flat = filter(alpha, 0.01);
@@ -143,7 +146,7 @@ fn the_start_is_the_one_chosen() {
 fn eq_8_has_an_angle_for_every_force_with_a_direction() {
     let angle = |x, y| from_accelerometer(SpecificForce::from_m_per_s2(Vector3::new(x, y, 1.0)));
     let mut random = Random(2);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let truth = random.between(-PI, PI);
         let size = 10.0_f64.powf(random.between(-150.0, 150.0));
         let found = angle(size * truth.sin(), size * truth.cos()).expect("a direction");
@@ -183,7 +186,7 @@ fn a_difference_goes_the_short_way() {
 #[test]
 fn the_two_transfer_functions_sum_to_one() {
     let mut random = Random(3);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let alpha = random.between(0.0, 1.0);
         let dt = 10.0_f64.powf(random.between(-4.0, 0.0));
         let hertz = 10.0_f64.powf(random.between(-6.0, 3.0));
@@ -263,11 +266,21 @@ fn a_bias_drifts_for_ever_in_the_gyro_and_stops_in_the_filter() {
         flat.update(&reading(bias, tilted(0.0)));
     }
     let offset = error::fused_offset(about_z(bias), time_constant(alpha, dt));
+    let offset = offset.expect("it stands still");
     assert!((offset.degrees() - 0.49).abs() < 1e-9);
     assert!((flat.roll().fused.degrees() - offset.degrees()).abs() < 1e-9);
     let drift = error::gyro_drift(about_z(bias), Seconds(60.0));
     assert!((drift.degrees() - 60.0).abs() < 1e-9);
     assert!((flat.roll().gyro.degrees() - drift.degrees()).abs() < 1e-9);
+    // The gyro alone never stands still.
+    for alpha in [1.0, 1.5, f64::NAN] {
+        for bias in [bias, 0.0] {
+            let gyro_alone = time_constant(alpha, dt);
+            assert_eq!(error::fused_offset(about_z(bias), gyro_alone), None);
+        }
+    }
+    let no_bias = about_z(f64::NAN);
+    assert_eq!(error::fused_offset(no_bias, time_constant(alpha, dt)), None);
 }
 
 /// Eq. 6 over a motion θ(t) with rate ω(t): estimate minus truth at the end.
@@ -306,7 +319,7 @@ fn most_drift_is_bias_and_the_integration_error_is_bounded() {
         let t = f64::from(k) * dt;
         let rate = amplitude * TAU * (TAU * t).cos();
         let angle = flat.update(&reading(rate, [0.0; 3])).gyro.rad();
-        worst = worst.max((angle - amplitude * (TAU * (t + dt)).sin()).abs());
+        worst = larger(worst, (angle - amplitude * (TAU * (t + dt)).sin()).abs());
     }
     assert!((0.37..0.38).contains(&worst.to_degrees()), "{worst}");
     let bias = about_z(0.1_f64.to_radians());
@@ -344,10 +357,13 @@ fn fused_is_calmer_than_the_accelerometer_and_truer_than_the_gyro() {
 #[test]
 fn alpha_outside_0_to_1_counts_as_the_nearer_end() {
     for (alpha, fused) in [
+        (f64::NEG_INFINITY, 0.4),
+        (-1e300, 0.4),
         (-0.5, 0.4),
         (0.0, 0.4),
         (1.0, 0.1),
         (1.5, 0.1),
+        (f64::INFINITY, 0.1),
         (f64::NAN, 0.1),
     ] {
         let mut flat = filter(alpha, 0.01);
@@ -357,6 +373,24 @@ fn alpha_outside_0_to_1_counts_as_the_nearer_end() {
             "{alpha}: {roll:?}"
         );
     }
+    // However far outside, and at any period.
+    fn far<T: RealField + Copy>() {
+        for exponent in -30..=30 {
+            for period in [1e-4, 0.001, 0.0033, 0.01, 1.0 / 3.0] {
+                let (far, period) = (10.0_f64.powi(exponent), Seconds(convert::<f64, T>(period)));
+                for far in [far, f64::INFINITY] {
+                    let weight = |alpha: f64| {
+                        TimeConstant::from_gyro_weight(convert::<f64, T>(alpha), period)
+                            .gyro_weight(period)
+                    };
+                    assert_eq!(weight(-far), T::zero(), "-{far}");
+                    assert_eq!(weight(1.0 + far), T::one(), "1 + {far}");
+                }
+            }
+        }
+    }
+    far::<f32>();
+    far::<f64>();
 }
 
 #[test]
@@ -391,9 +425,33 @@ fn no_time_no_turn_and_no_input_leaves_the_circle() {
     }
 }
 
+#[test]
+fn what_is_not_finite_turns_nothing_and_corrects_nothing() {
+    let after = |rate, force| {
+        let mut flat = filter(0.9, 0.01);
+        flat.start_at(Angle::from_rad(0.4));
+        let roll = flat.update(&reading(rate, force));
+        [roll.gyro, roll.accelerometer, roll.fused].map(|angle| angle.rad())
+    };
+    let near = |is: [f64; 3], expected: [f64; 3]| {
+        let pairs = is.into_iter().zip(expected);
+        assert!(
+            pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-12),
+            "{is:?}"
+        );
+    };
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        near(after(bad, tilted(0.5)), [0.4, 0.5, 0.41]);
+        near(after(1.0, [bad, G, 0.0]), [0.41, 0.4, 0.41]);
+        near(after(bad, [0.0, bad, 0.0]), [0.4; 3]);
+    }
+    // Free fall.
+    near(after(1.0, [0.0; 3]), [0.41, 0.4, 0.41]);
+}
+
 fn huge_turns_stay_on_the_circle<T: RealField + Copy>(largest_exponent: f64) {
     let mut random = Random(4);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let turn: T = convert(10.0_f64.powf(random.between(0.0, largest_exponent)));
         let (zero, angle) = (Angle::from_rad(T::zero()), Angle::from_rad(turn));
         assert!(shortest_turn(zero, angle).rad().abs() <= T::pi());

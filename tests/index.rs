@@ -65,15 +65,31 @@ fn item_exists(path: &str) -> bool {
         file = module;
         segments.next();
     }
-    // A module re-exports items of the files below it, which have their methods.
+    // A module re-exports items of the files below it, which have their methods; those that lead
+    // from one document to another stand in `frames`.
     let below = fs::read_dir(&folder).into_iter().flatten().flatten();
     let mut text = read(&file);
     for entry in below.filter(|entry| !folder.ends_with("src") && entry.path().is_file()) {
         text += &read(&entry.path());
     }
-    let mut rest = segments.peekable();
     // The module itself is enough, or an item in it and what belongs to the item.
-    rest.all(|name| defines(&text, name))
+    let Some(item) = segments.next() else {
+        return true;
+    };
+    let implements = |text: &str| {
+        let mut impls = text.lines().filter(|line| line.starts_with("impl"));
+        impls.any(|line| line.contains(&format!(" {item}<")))
+    };
+    let frames = fs::read_dir(root().join("src/frames"))
+        .into_iter()
+        .flatten();
+    for entry in frames.flatten() {
+        let elsewhere = read(&entry.path());
+        if implements(&elsewhere) {
+            text += &elsewhere;
+        }
+    }
+    defines(&text, item) && segments.all(|name| defines(&text, name))
 }
 
 /// A test such as `tests/tilt.rs::a_test` or `emulator/tests/sensor/fifo.rs::a_test`.
@@ -82,7 +98,15 @@ fn test_exists(path: &str) -> bool {
         return root().join(path).is_file();
     };
     let file: PathBuf = root().join(file);
-    file.is_file() && defines(&read(&file), name)
+    file.is_file() && tests(&read(&file), name)
+}
+
+/// Whether `text` has a function `name` that is run as a test.
+fn tests(text: &str, name: &str) -> bool {
+    text.split("#[test]").skip(1).any(|after| {
+        let function = after.split_once("fn ").map(|(_, function)| function);
+        function.is_some_and(|function| function.starts_with(&format!("{name}(")))
+    })
 }
 
 #[test]
@@ -92,9 +116,16 @@ fn every_item_and_every_test_that_the_documents_name_is_there() {
         if name.starts_with("vrduino::") {
             seen.0 += 1;
             assert!(item_exists(&name), "{document}: no item {name}");
+        } else if name.starts_with("examples/") {
+            assert!(
+                root().join(&name).is_file(),
+                "{document}: no example {name}"
+            );
         } else if name.starts_with("tests/") || name.starts_with("emulator/tests/") {
             seen.1 += 1;
             assert!(test_exists(&name), "{document}: no test {name}");
+        } else if name.starts_with("examples/") {
+            assert!(root().join(&name).is_file(), "{document}: no {name}");
         }
     }
     assert!(seen.0 > 50 && seen.1 > 50, "only {seen:?} names were found");
@@ -102,7 +133,7 @@ fn every_item_and_every_test_that_the_documents_name_is_there() {
 
 #[test]
 fn no_path_in_the_tables_escapes_the_check() {
-    for document in ["equations.md", "errata.md"] {
+    for document in ["equations.md", "errata.md", "conventions.md"] {
         let text = read(&root().join("docs").join(document));
         let plain: String = text.split('`').step_by(2).collect();
         assert!(
@@ -138,7 +169,10 @@ fn what_is_not_there_is_found_out() {
     assert!(test_exists(
         "tests/index.rs::what_is_not_there_is_found_out"
     ));
+    assert!(item_exists("vrduino::virtual_gyro::TaitBryan::to_notes"));
+    assert!(!item_exists("vrduino::frames::angles::TaitBryan::to_sea"));
     assert!(!test_exists("tests/index.rs::what_is_not"));
+    assert!(!test_exists("tests/index.rs::test_exists"));
     assert!(!test_exists("tests/astrology.rs::anything"));
 }
 

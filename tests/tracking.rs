@@ -10,8 +10,8 @@ mod rotations;
 use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
 use rotations::{
     IDENTITY, Random, angle_between, anything, apply, assert_is_a_rotation, exponential,
-    gyro as notes_step, largest_difference, matrix, product, random_quaternion, reading, rotation,
-    tilt as notes_tilt, transpose, unit_quaternion,
+    gyro as notes_step, larger, largest_difference, matrix, product, random_quaternion, reading,
+    rotation, tilt as notes_tilt, transpose, unit_quaternion,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use vrduino::orientation::complementary::Complementary;
@@ -67,7 +67,7 @@ fn deviation_from_the_notes<T: RealField + Copy>() -> f64 {
                 assert_is_a_rotation(&q, 2e-6);
                 let by_gyro = notes_step(&expected, rate, DT);
                 expected = notes_tilt(&by_gyro, force, DT / (tau + DT));
-                worst = worst.max(largest_difference(&matrix(&q), &expected));
+                worst = larger(worst, largest_difference(&matrix(&q), &expected));
             }
         }
     }
@@ -128,7 +128,7 @@ fn quarter_turns_go_the_right_way() {
             gyro.update(&reading::<f64>(rate, [0.0; 3]));
         }
         let turned = gyro.orientation() * Vector3::from(body);
-        assert!((turned - Vector3::from(world)).amax() < 1e-12);
+        assert!((turned - Vector3::from(world)).norm() < 1e-12);
     }
 }
 
@@ -172,7 +172,7 @@ fn a_board_turned_upside_down_is_found_again() {
         filter.update(&reading::<f32>([0.0; 3], [0.0, -G, 0.0]));
     }
     let up = filter.orientation() * -Vector3::y();
-    assert!((up - Vector3::y()).amax() < 1e-5, "{up:?}");
+    assert!((up - Vector3::y()).norm() < 1e-5, "{up:?}");
 }
 
 fn survives_anything<T: RealField + Copy>(tolerance: f64) {
@@ -220,7 +220,7 @@ fn no_input_makes_anything_but_a_rotation() {
 
 fn one_step_is_exact<T: RealField + Copy>(tolerance: f64) {
     let mut random = Random(41);
-    for _ in 0..50_000 {
+    for _ in 0..500_000 {
         let (w, period) = (random.vector(35.0), random.between(0.0, 0.1));
         let mut gyro = DeadReckoning::new(Seconds(convert::<f64, T>(period)));
         let q = gyro.update(&reading(w, [0.0; 3]));
@@ -245,7 +245,7 @@ fn force<T: RealField + Copy>(v: [f64; 3]) -> SpecificForce<T> {
 
 fn one_update_is_exact<T: RealField + Copy>(tolerance: f64) {
     let mut random = Random(44);
-    for _ in 0..20_000 {
+    for _ in 0..200_000 {
         let (start, alpha) = (random_quaternion(&mut random), random.unit());
         let (w, a) = (random.vector(5.0), random.vector(10.0));
         let c = convert::<f64, T>;
@@ -254,13 +254,15 @@ fn one_update_is_exact<T: RealField + Copy>(tolerance: f64) {
         filter.set(unit_quaternion(start));
         let by_gyro = notes_step(&matrix(&unit_quaternion::<f64>(start)), w, DT);
         let [x, y, z] = apply(&by_gyro, a);
-        // Close to upside down the axis hangs on the last digits of the force.
-        if y < 0.0 && x.hypot(z) < -0.05 * y {
+        // Within 6° of upside down the axis hangs on the last digits of the force: single precision has
+        // 1e-5 there no more.
+        if y < 0.0 && x.hypot(z) < -0.1 * y {
             continue;
         }
         let q = filter.update(&reading(w, a));
         let expected = notes_tilt(&by_gyro, a, 1.0 - alpha);
-        assert!(largest_difference(&matrix(&q), &expected) < tolerance);
+        let off = largest_difference(&matrix(&q), &expected);
+        assert!(off < tolerance, "{off}: {start:?} {alpha} {w:?} {a:?}");
     }
 }
 
@@ -268,6 +270,32 @@ fn one_update_is_exact<T: RealField + Copy>(tolerance: f64) {
 fn one_update_of_the_filter_is_eq_24() {
     one_update_is_exact::<f64>(1e-9);
     one_update_is_exact::<f32>(1e-5);
+}
+
+#[test]
+fn what_is_not_finite_turns_nothing_and_corrects_nothing() {
+    let (rate, up) = ([0.3, -0.2, 0.5], [1.0, 9.0, -2.0]);
+    let tau = TimeConstant::from_gyro_weight(0.9, Seconds(DT));
+    let updated = |rate, force| {
+        let mut filter = Complementary::new(tau, Seconds(DT));
+        filter.set(unit_quaternion::<f64>([0.5, -0.5, 0.5, 0.5]));
+        let start = matrix(&filter.orientation());
+        (start, matrix(&filter.update(&reading(rate, force))))
+    };
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for axis in 0..3 {
+            let (mut bad_rate, mut bad_force) = (rate, up);
+            (bad_rate[axis], bad_force[axis]) = (bad, bad);
+            let (start, q) = updated(bad_rate, up);
+            assert!(largest_difference(&q, &notes_tilt(&start, up, 0.1)) < 1e-9);
+            let (start, q) = updated(rate, bad_force);
+            assert!(largest_difference(&q, &notes_step(&start, rate, DT)) < 1e-9);
+            let (start, q) = updated(bad_rate, bad_force);
+            assert!(largest_difference(&q, &start) < 1e-15);
+        }
+    }
+    let (start, q) = updated(rate, [0.0; 3]);
+    assert!(largest_difference(&q, &notes_step(&start, rate, DT)) < 1e-9);
 }
 
 #[test]
@@ -293,6 +321,9 @@ fn the_error_of_integration_goes_with_the_time_step_not_with_its_square() {
     for pair in errors.windows(2) {
         let ratio = pair[0] / pair[1];
         assert!((ratio - 2.0).abs() < 0.05, "{errors:?}");
+    }
+    for (error, expected) in errors.iter().zip([0.0329, 0.0164, 0.0082, 0.0041]) {
+        assert!((error - expected).abs() < 1e-4, "{errors:?}");
     }
 }
 
@@ -320,15 +351,15 @@ fn quaternions_pass_where_adding_up_angles_does_not() {
 fn a_vector_of_the_body_is_seen_from_the_world() {
     // Eq. 19, and eq. 20 and 21 for the force.
     let mut random = Random(42);
-    for _ in 0..10_000 {
+    for _ in 0..100_000 {
         let (w, u) = (random.vector(3.0), random.vector(10.0));
         let mut gyro = DeadReckoning::new(Seconds(0.5));
         gyro.update(&reading(w, [0.0; 3]));
         let q = gyro.update(&reading(w, [0.0; 3]));
         let expected = Vector3::from(apply(&exponential(w), u));
-        assert!((q * Vector3::from(u) - expected).amax() < 1e-9);
+        assert!((q * Vector3::from(u) - expected).norm() < 1e-9);
         let seen = tilt::in_world(q, force(u)).m_per_s2();
-        assert!((seen - expected).amax() < 1e-9);
+        assert!((seen - expected).norm() < 1e-9);
     }
 }
 
@@ -403,6 +434,7 @@ fn alpha_is_the_weight_of_the_gyro() {
         );
     }
     for (bad, taken) in [
+        (f64::NEG_INFINITY, 0.0),
         (-0.5, 0.0),
         (1.5, 1.0),
         (f64::NAN, 1.0),

@@ -15,7 +15,7 @@ mod rotations;
 use camera::Camera;
 use gl::{Gl, printed_algorithm_2, printed_algorithm_3};
 use nalgebra::{Matrix4, Perspective3, Point3, Quaternion, RealField, UnitQuaternion, Vector3};
-use rotations::{Random, apply, axis_angle, product, rotation, transpose};
+use rotations::{Random, apply, axis_angle, larger, product, rotation, transpose};
 use std::f64::consts::{FRAC_PI_2, PI};
 use vrduino::orientation::quaternion::axis_angle as decomposed;
 use vrduino::units::{Angle, Millimetres};
@@ -28,7 +28,7 @@ use vrduino::view::viewer::Viewer;
 use vrduino::view::{ViewError, from_stream, inverse};
 
 const EYES: [(Eye, f64); 2] = [(Eye::Left, -32.0), (Eye::Right, 32.0)];
-const INPUTS: usize = 100_000;
+const INPUTS: usize = 2_000_000;
 
 fn quaternion<T: RealField + Copy>(axis: [f64; 3], angle: f64) -> UnitQuaternion<T> {
     let (sin, cos) = (angle / 2.0).sin_cos();
@@ -51,7 +51,7 @@ fn off<T: RealField + Copy>(matrix: &Matrix4<T>, reference: &[[f64; 3]; 3]) -> f
     };
     (0..16)
         .map(|k| (number(matrix[(k / 4, k % 4)]) - expected(k / 4, k % 4)).abs())
-        .fold(0.0, f64::max)
+        .fold(0.0, larger)
 }
 
 fn viewer(neck: f64, head: f64) -> Viewer<f64> {
@@ -76,7 +76,7 @@ fn the_test_object_of_algorithm_1_turns_as_the_board_does() {
             let (axis, angle) = (random.direction(), random.between(-TWO_TURNS, TWO_TURNS));
             let turn = decomposed(quaternion::<T>(axis, angle));
             let found = gl_rotate(turn.angle, turn.axis.into_inner()).expect("finite");
-            worst.max(off(&found, &rotation(axis, angle)))
+            larger(worst, off(&found, &rotation(axis, angle)))
         })
     }
     const TWO_TURNS: f64 = 4.0 * PI;
@@ -122,7 +122,7 @@ fn three_ways_to_the_inverse_agree() {
                 inverse::by_matrix(q),
             ];
             let offs = ways.map(|way| off(&way.expect("finite"), &expected));
-            offs.into_iter().fold(worst, f64::max)
+            offs.into_iter().fold(worst, larger)
         })
     }
     assert!(worst::<f64>() < 1e-9);
@@ -315,7 +315,7 @@ fn a_view_is_where_geometry_puts_the_eye() {
                 let pivot = [place[0], place[1] - neck, place[2] + head];
                 let expected = Camera::at([0, 1, 2].map(|i| pivot[i] + arm[i]), &turn);
                 let view = viewer.view(quaternion(axis, angle), eye).expect("finite");
-                worst.max(Camera::of(&view.to_homogeneous()).off(&expected))
+                larger(worst, Camera::of(&view.to_homogeneous()).off(&expected))
             })
         })
     }

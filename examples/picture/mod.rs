@@ -1,27 +1,27 @@
 //! Lines over an axis, as an SVG file: all that the examples draw.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 /// A line with its name.
-pub struct Line {
+pub struct Line<'a> {
     /// As the legend has it.
-    pub name: &'static str,
+    pub name: &'a str,
     /// Its points; a point that is not finite interrupts the line.
     pub points: Vec<[f64; 2]>,
 }
 
 /// A chart.
-pub struct Picture {
+pub struct Picture<'a> {
     /// Above it.
-    pub title: &'static str,
+    pub title: &'a str,
     /// Quantity and unit of the axis to the right.
-    pub x: &'static str,
+    pub x: &'a str,
     /// Quantity and unit of the axis upwards.
-    pub y: &'static str,
+    pub y: &'a str,
     /// What it shows.
-    pub lines: Vec<Line>,
+    pub lines: Vec<Line<'a>>,
 }
 
 const WIDTH: f64 = 760.0;
@@ -32,7 +32,7 @@ const COLOURS: [&str; 6] = [
     "#1f6fb4", "#d1495b", "#2e8b57", "#e0a030", "#7b5ea7", "#555555",
 ];
 
-impl Picture {
+impl Picture<'_> {
     /// Writes it to `target/pictures/NAME.svg` and returns where that is.
     ///
     /// # Errors
@@ -40,7 +40,16 @@ impl Picture {
     /// What the file system says.
     pub fn save(&self, name: &str) -> io::Result<PathBuf> {
         let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/pictures");
-        fs::create_dir_all(&folder)?;
+        self.save_in(&folder, name)
+    }
+
+    /// The same in a folder of one's own.
+    ///
+    /// # Errors
+    ///
+    /// What the file system says.
+    pub fn save_in(&self, folder: &Path, name: &str) -> io::Result<PathBuf> {
+        fs::create_dir_all(folder)?;
         let path = folder.join(format!("{name}.svg"));
         fs::write(&path, self.svg())?;
         Ok(path)

@@ -10,8 +10,10 @@ use crate::virtual_gyro::angles::TaitBryan;
 use nalgebra::RealField;
 
 impl<T: RealField + Copy> TaitBryan<T> {
-    /// The same orientation in the notes' angles. The order is the same, and so is the axis of
-    /// pitch; those of yaw and roll are opposite.
+    /// The same orientation in the notes' angles: the paper's section 3.1, in north-east-down, to
+    /// eq. 10 of the notes, y up ([`Axes::orientation_to_y_up`](super::axes::Axes)). The order is
+    /// the same, and so is the axis of pitch; those of yaw and roll are opposite. What is not finite
+    /// stays so.
     pub fn to_notes(self) -> EulerAngles<T> {
         EulerAngles {
             yaw: negated(self.yaw),
@@ -22,7 +24,8 @@ impl<T: RealField + Copy> TaitBryan<T> {
 }
 
 impl<T: RealField + Copy> EulerAngles<T> {
-    /// The same orientation in the paper's angles.
+    /// The same orientation in the paper's angles (section 3.1): the inverse of
+    /// [`TaitBryan::to_notes`].
     pub fn to_paper(self) -> TaitBryan<T> {
         TaitBryan {
             roll: negated(self.roll),
@@ -47,7 +50,7 @@ pub fn whole_turn<T: RealField + Copy>(angle: Angle<T>) -> Option<Angle<T>> {
 }
 
 /// The same angle between half a turn one way and half a turn the other, what is to be corrected
-/// by a fraction. None if it is not finite.
+/// by a fraction (course notes eq. 9 and 24, the blog post's −αθ). None if it is not finite.
 pub fn short_way<T: RealField + Copy>(angle: Angle<T>) -> Option<Angle<T>> {
     let angle = angle.rad();
     if !angle.is_finite() {

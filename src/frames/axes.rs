@@ -42,6 +42,7 @@ impl Axes {
 
     /// An orientation, body to world, of a body and a world that both have these axes, for a body
     /// and a world that both have [`Axes::YUp`]. The angle stays; the axis is a vector like others.
+    /// Components are exchanged and negated, so what is not of unit length is not afterwards.
     pub fn orientation_to_y_up<T: RealField + Copy>(
         self,
         q: UnitQuaternion<T>,

@@ -4,13 +4,13 @@
 use crate::units::SpecificForce;
 use nalgebra::{RealField, Vector3};
 
-/// The pull of the earth as an acceleration, g_d of the paper. It points **down**, in whatever axes
-/// the force it comes from has.
+/// The pull of the earth as an acceleration, g_d of the paper (section 3.1, eq. 2), in m/s². It
+/// points **down**, in whatever axes the force it comes from has: see [`super::axes`] for those.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gravity<T>(Vector3<T>);
 
 impl<T: RealField + Copy> Gravity<T> {
-    /// What a resting accelerometer tells of gravity.
+    /// What a resting accelerometer (course notes eq. 2 without a⁽ˡ⁾) tells of gravity.
     pub fn from_accelerometer(force: SpecificForce<T>) -> Self {
         Self(-force.m_per_s2())
     }

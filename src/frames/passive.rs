@@ -5,15 +5,18 @@
 //! The paper's table 2 has both: it makes of the passive M the quaternion device to reference, an
 //! active one. So it is the notes' eq. 34 applied to the transpose of M.
 
-use crate::orientation::quaternion::{NotARotation, from_matrix};
+use crate::orientation::quaternion::{NotARotation, from_matrix, trued};
 use nalgebra::{Matrix3, RealField, UnitQuaternion};
 
-/// The paper's R or M, reference to device, of an orientation, body to world, in the same axes.
+/// The paper's R (section 3.1) or M (eq. 7), reference to device, of an orientation, body to world,
+/// in the same axes: the transpose of eq. 33 of the notes. A quaternion that is zero or not finite
+/// counts as the identity.
 pub fn matrix<T: RealField + Copy>(q: UnitQuaternion<T>) -> Matrix3<T> {
-    q.conjugate().to_rotation_matrix().into_inner()
+    trued(q).conjugate().to_rotation_matrix().into_inner()
 }
 
-/// The orientation, body to world, of the paper's R or M.
+/// The orientation, body to world, of the paper's R or M (table 2, by way of eq. 34 of the notes),
+/// with w ≥ 0.
 ///
 /// # Errors
 ///

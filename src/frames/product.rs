@@ -2,7 +2,10 @@
 //! axes and stands on the right: q q_Δ (course notes eq. 18). A step about the world's axes, like
 //! the tilt correction, stands on the left (eq. 24). The blog post multiplies the gyro's step from
 //! the left, which is a turn about other axes; it would be right for the step in world axes.
+//!
+//! A quaternion that is zero or not finite counts as the identity.
 
+use crate::orientation::quaternion::trued;
 use nalgebra::{RealField, UnitQuaternion};
 
 /// The step about the world's axes that does what `body_step` does to a body of this orientation
@@ -11,7 +14,8 @@ pub fn step_in_world<T: RealField + Copy>(
     orientation: UnitQuaternion<T>,
     body_step: UnitQuaternion<T>,
 ) -> UnitQuaternion<T> {
-    orientation * body_step * orientation.conjugate()
+    let orientation = trued(orientation);
+    trued(orientation * trued(body_step) * orientation.conjugate())
 }
 
 /// The step about the body's axes that does what `world_step` does to a body of this orientation
@@ -20,5 +24,6 @@ pub fn step_in_body<T: RealField + Copy>(
     orientation: UnitQuaternion<T>,
     world_step: UnitQuaternion<T>,
 ) -> UnitQuaternion<T> {
-    orientation.conjugate() * world_step * orientation
+    let orientation = trued(orientation);
+    trued(orientation.conjugate() * trued(world_step) * orientation)
 }

@@ -24,24 +24,25 @@ use nalgebra::{RealField, Vector3};
 /// everything here, have them about y, x and z.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PitchRoll<T> {
-    /// θ_x.
+    /// θ_x about x: looking up is positive.
     pub pitch: Angle<T>,
-    /// θ_z.
+    /// θ_z about z: leaning to the left is positive.
     pub roll: Angle<T>,
 }
 
 impl<T: RealField + Copy> PitchRoll<T> {
     /// Eq. 10: the direction the accelerometer of a resting board reads, body frame, of length 1.
-    /// Yaw has no part in it.
+    /// Yaw has no part in it. An angle that is not finite counts as zero.
     pub fn up_in_body(&self) -> Vector3<T> {
-        let (sin_x, cos_x) = self.pitch.rad().sin_cos();
-        let (sin_z, cos_z) = self.roll.rad().sin_cos();
+        let (sin_x, cos_x) = self.pitch.finite_or_zero().rad().sin_cos();
+        let (sin_z, cos_z) = self.roll.finite_or_zero().rad().sin_cos();
         Vector3::new(cos_x * sin_z, cos_x * cos_z, -sin_x)
     }
 }
 
 /// Pitch from −90° to 90° and roll from −180° to 180°: the pair the other modules use, since the
-/// pitch of a head stays in that range. Zeros for a force that has no direction.
+/// pitch of a head stays in that range. Straight up or down, where every roll would do, roll is
+/// zero. Zeros for a force (body frame) that has no direction.
 pub fn pitch_and_roll<T: RealField + Copy>(force: SpecificForce<T>) -> PitchRoll<T> {
     or_zeros(directed(force).map(|a| PitchRoll {
         pitch: half_circle(a),
@@ -53,7 +54,8 @@ pub fn pitch_and_roll<T: RealField + Copy>(force: SpecificForce<T>) -> PitchRoll
     }))
 }
 
-/// Pitch from −180° to 180° and roll from −90° to 90°. Zeros for a force that has no direction.
+/// Pitch from −180° to 180° (eq. 11) and roll from −90° to 90°. Zeros for a force (body frame) that
+/// has no direction.
 ///
 /// Eq. 12 in its other form, tan⁻¹(a_x/a_y), without the division by a_y.
 pub fn full_pitch_and_roll<T: RealField + Copy>(force: SpecificForce<T>) -> PitchRoll<T> {

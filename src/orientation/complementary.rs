@@ -9,7 +9,7 @@ use crate::calibration::Reading;
 use crate::units::{Seconds, SpecificForce};
 use nalgebra::{RealField, UnitQuaternion};
 
-/// The complementary filter on quaternions.
+/// The complementary filter on quaternions, eq. 24.
 #[derive(Clone, Copy, Debug)]
 pub struct Complementary<T: RealField> {
     derived: Derived<T>,
@@ -25,7 +25,7 @@ struct Derived<T> {
 }
 
 impl<T: RealField + Copy> Complementary<T> {
-    /// Starts from the identity.
+    /// Starts from the identity, as the notes do (section 5.1).
     pub fn new(time_constant: TimeConstant<T>, sample_period: Seconds<T>) -> Self {
         Self {
             derived: Derived {
@@ -40,7 +40,8 @@ impl<T: RealField + Copy> Complementary<T> {
     ///
     /// The tilt is that of q_ω, after the gyro's step: correcting one orientation by the tilt of
     /// another would leave a whole step behind. The correction stands on the left, because its
-    /// axis is in the world.
+    /// axis is in the world. A rate that is not finite turns nothing, and a force that has no
+    /// direction (free fall, or not finite) corrects nothing.
     pub fn update(&mut self, reading: &Reading<T>) -> UnitQuaternion<T> {
         let Derived {
             sample_period,
@@ -53,23 +54,25 @@ impl<T: RealField + Copy> Complementary<T> {
         self.orientation
     }
 
-    /// Body to world.
+    /// As of the last sample, body to world.
     pub fn orientation(&self) -> UnitQuaternion<T> {
         self.orientation
     }
 
-    /// Starts again from this orientation, body to world.
+    /// Starts again from this orientation, body to world; from the identity if it is zero or not
+    /// finite.
     pub fn set(&mut self, orientation: UnitQuaternion<T>) {
         self.orientation = renormalised(orientation);
     }
 
-    /// Starts again with yaw 0 and the tilt this force (body frame) shows.
+    /// Starts again with no turn about the vertical and the tilt this force (body frame) shows
+    /// (section 5.2); from the identity if it shows none.
     pub fn reset(&mut self, force: SpecificForce<T>) {
         self.set(tilt::level(UnitQuaternion::identity(), force));
     }
 
     /// Takes the tilt this force (body frame) shows at once and keeps yaw: for after a gap, when
-    /// the time constant is too long to wait for.
+    /// the time constant is too long to wait for. A force without direction changes nothing.
     pub fn level(&mut self, force: SpecificForce<T>) {
         self.set(tilt::level(self.orientation, force));
     }

@@ -10,7 +10,8 @@
 //! * Its tilt axis ŷ × u turns ŷ into u, not u towards ŷ. That is right for an error, which its
 //!   −α then takes back.
 //!
-//! The post's calibration Aω + b comes before: a [`Reading`] is corrected already.
+//! The post's calibration Aω + b comes before: [`Reading::calibrated`]. The field wants the same, by
+//! [`Calibration::corrected`](crate::sensor::measurement::Calibration::corrected).
 
 use super::quaternion::{axis_angle, from_axis_angle};
 use super::rotation::renormalised;
@@ -19,7 +20,7 @@ use crate::calibration::Reading;
 use crate::units::{Angle, MagneticField, Seconds, SpecificForce};
 use nalgebra::{RealField, UnitQuaternion};
 
-/// The post's filter.
+/// The post's filter: its q̃_k, d and q̃′_k. The post has no equation numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct DriftCorrection<T: RealField> {
     sample_period: Seconds<T>,
@@ -50,7 +51,8 @@ impl<T: RealField + Copy> DriftCorrection<T> {
     /// [`error`].
     ///
     /// `field` is in the body frame, None where there is no magnetometer or nothing new from it
-    /// since the last sample: then yaw is left alone, as the post's identity for d_yaw does.
+    /// since the last sample: then yaw is left alone, as the post's identity for d_yaw does. So is
+    /// all that [`error`] cannot tell; a rate that is not finite turns nothing.
     pub fn update(
         &mut self,
         reading: &Reading<T>,
@@ -61,12 +63,13 @@ impl<T: RealField + Copy> DriftCorrection<T> {
         self.orientation
     }
 
-    /// Body to world.
+    /// As of the last sample, body to world.
     pub fn orientation(&self) -> UnitQuaternion<T> {
         self.orientation
     }
 
-    /// Starts again from this orientation, body to world.
+    /// Starts again from this orientation, body to world; from the identity if it is zero or not
+    /// finite.
     pub fn set(&mut self, orientation: UnitQuaternion<T>) {
         self.orientation = renormalised(orientation);
     }
@@ -95,7 +98,9 @@ pub fn error<T: RealField + Copy>(
     renormalised(to_level.inverse() * d_yaw)
 }
 
-/// q′ = q(v, −αθ) q for an error of θ about v, the short way round.
+/// q′ = q(v, −αθ) q for an error of θ about v, the short way round. `gain` is α; `estimate` and what
+/// comes back are body to world, `error` is a turn in the world. A gain that is not finite corrects
+/// nothing.
 pub fn correct<T: RealField + Copy>(
     estimate: UnitQuaternion<T>,
     error: UnitQuaternion<T>,

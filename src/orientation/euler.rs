@@ -5,20 +5,21 @@
 //! trackers on angles are here as the counterexample they became: [`lecture`].
 
 use super::flatland::shortest_turn;
+use super::quaternion::unit;
 use crate::units::{Angle, AngularRate};
 use nalgebra::{Matrix4, Point3, RealField, Rotation3, UnitQuaternion, Vector3, Vector4, convert};
 
 pub mod lecture;
 
 /// Yaw about y, then pitch about x, then roll about z, each about the axes the turn before has left
-/// the body with. Body to world it is R_y(θ_y) R_x(θ_x) R_z(θ_z).
+/// the body with. Body to world it is R_y(θ_y) R_x(θ_x) R_z(θ_z), the inverse of eq. 10.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EulerAngles<T> {
-    /// θ_y: to the left is positive.
+    /// θ_y about y: turning to the left is positive.
     pub yaw: Angle<T>,
-    /// θ_x: up is positive.
+    /// θ_x about x: looking up is positive.
     pub pitch: Angle<T>,
-    /// θ_z: to the left is positive.
+    /// θ_z about z: leaning to the left is positive.
     pub roll: Angle<T>,
 }
 
@@ -44,17 +45,23 @@ impl<T: RealField + Copy> EulerAngles<T> {
         }
     }
 
-    /// Eq. 10: R = R_z(−θ_z) R_x(−θ_x) R_y(−θ_y), which takes vectors from **world to body**.
+    /// Eq. 10: R = R_z(−θ_z) R_x(−θ_x) R_y(−θ_y), which takes vectors from **world to body**. An angle
+    /// that is not finite counts as zero.
     pub fn world_to_body(&self) -> Rotation3<T> {
-        let about = |axis, angle: Angle<T>| Rotation3::from_axis_angle(&axis, -angle.rad());
+        let about = |axis, angle: Angle<T>| {
+            Rotation3::from_axis_angle(&axis, -angle.finite_or_zero().rad())
+        };
         about(Vector3::z_axis(), self.roll)
             * about(Vector3::x_axis(), self.pitch)
             * about(Vector3::y_axis(), self.yaw)
     }
 
-    /// The same orientation as the trackers give it, body to world.
+    /// The same orientation as the trackers give it, body to world. An angle that is not finite counts
+    /// as zero.
     pub fn orientation(&self) -> UnitQuaternion<T> {
-        let about = |axis, angle: Angle<T>| UnitQuaternion::from_axis_angle(&axis, angle.rad());
+        let about = |axis, angle: Angle<T>| {
+            UnitQuaternion::from_axis_angle(&axis, angle.finite_or_zero().rad())
+        };
         about(Vector3::y_axis(), self.yaw)
             * about(Vector3::x_axis(), self.pitch)
             * about(Vector3::z_axis(), self.roll)
@@ -64,12 +71,13 @@ impl<T: RealField + Copy> EulerAngles<T> {
     /// to 180°.
     ///
     /// Straight up or down (gimbal lock) only the sum or difference of yaw and roll is defined.
-    /// There roll is zero, and yaw has all of it. All zero if the quaternion is not finite.
+    /// There roll is zero, and yaw has all of it. All zero if the quaternion is zero or not finite;
+    /// of any other length, which `new_unchecked` lets it have, only its direction counts.
     pub fn of(orientation: UnitQuaternion<T>) -> Self {
-        let (w, x, y, z) = (orientation.w, orientation.i, orientation.j, orientation.k);
-        if !(w.is_finite() && x.is_finite() && y.is_finite() && z.is_finite()) {
+        let Some(orientation) = unit(orientation.into_inner()) else {
             return Self::zero();
-        }
+        };
+        let (w, x, y, z) = (orientation.w, orientation.i, orientation.j, orientation.k);
         // With c and s for cosine and sine of half the pitch:
         // (w − x, y + z) = (c − s) (cos, sin) of half the sum of yaw and roll,
         // (w + x, y − z) = (c + s) (cos, sin) of half their difference.
@@ -100,7 +108,7 @@ impl<T: RealField + Copy> EulerAngles<T> {
     }
 
     /// How the angles change while the body turns at `rate` (body frame). None at gimbal lock, where
-    /// they would have to change infinitely fast.
+    /// they would have to change infinitely fast, and for a rate or angles that are not finite.
     ///
     /// No document has it. It is what [`lecture`] leaves out: a gyro's axes are those of the body,
     /// the angles' axes are not.
@@ -122,15 +130,27 @@ impl<T: RealField + Copy> EulerAngles<T> {
         (finite && !locked).then_some(rates)
     }
 
-    /// M_view = R T(−eye) (lectures, “from lecture 2”): from the world to a camera that stands at
-    /// `eye` and looks along its own −z.
-    pub fn view_matrix(&self, eye: Point3<T>) -> Matrix4<T> {
-        self.world_to_body().to_homogeneous() * Matrix4::new_translation(&-eye.coords)
+    /// M_view = R T(−eye) (lectures, “from lecture 2”), R as in eq. 10: from the world to a camera
+    /// that stands at `eye` (world, in any unit of length) and looks along its own −z.
+    ///
+    /// For the position of a head; with that of one of two eyes the eyes stay behind when the head
+    /// turns, see [`crate::view::eyes`]. None if the position is not finite, or so far off that the
+    /// matrix would not be.
+    pub fn view_matrix(&self, eye: Point3<T>) -> Option<Matrix4<T>> {
+        let turn = self.world_to_body().to_homogeneous();
+        let view = turn * Matrix4::new_translation(&-eye.coords);
+        view.iter()
+            .all(|element| element.is_finite())
+            .then_some(view)
     }
 }
 
-/// v_clip = M_proj M_view M_model v (lectures, “from lecture 2”): a vertex of a model, in homogeneous
-/// clip coordinates.
+/// v_clip = M_proj M_view M_model v (lectures, “from lecture 2”): a vertex in the model's frame, in
+/// homogeneous clip coordinates. `model` takes it to the world, `view` from there to the camera,
+/// `projection` to clip space, all in one unit of length.
+///
+/// Nothing is divided by w or cut off. What is not finite in a matrix or the vertex is not finite in
+/// what comes out.
 pub fn to_clip_space<T: RealField + Copy>(
     projection: &Matrix4<T>,
     view: &Matrix4<T>,

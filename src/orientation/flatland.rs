@@ -62,9 +62,11 @@ impl<T: RealField + Copy> Flatland<T> {
         self.start_at(from_accelerometer(force).unwrap_or(Angle::from_rad(T::zero())));
     }
 
-    /// One sample. What is not finite in it changes nothing.
+    /// One sample. A rate that is not finite turns nothing, and a force without a direction in the
+    /// plane corrects nothing.
     pub fn update(&mut self, reading: &Reading<T>) -> Roll<T> {
-        let turned = reading.rate().rad_per_s().z * self.sample_period.0;
+        let turned = Angle::from_rad(reading.rate().rad_per_s().z * self.sample_period.0);
+        let turned = turned.finite_or_zero().rad();
         // Eq. 7.
         let gyro = self.roll.gyro.rad() + turned;
         // Eq. 9. The notes blend the two angles, which across the seam gives nonsense: half way
@@ -100,7 +102,8 @@ pub fn from_accelerometer<T: RealField + Copy>(force: SpecificForce<T>) -> Optio
     directed.then(|| Angle::from_rad(a.x.atan2(a.y)))
 }
 
-/// The difference between two angles, the short way round: from −180° to 180°.
+/// The difference between two angles, the short way round: from −180° to 180°. Not finite if one of
+/// the angles is not.
 pub fn shortest_turn<T: RealField + Copy>(from: Angle<T>, to: Angle<T>) -> Angle<T> {
     Angle::from_rad(wrapped(to.rad() - from.rad()))
 }

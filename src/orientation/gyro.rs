@@ -9,12 +9,13 @@ use crate::units::{AngularRate, Seconds};
 use nalgebra::{RealField, UnitQuaternion, convert};
 
 /// q_Δ of eq. 17: the turn from this sample's body frame to that of the last one, for a body that
-/// turned at `rate` (body frame) for the whole of the period.
+/// turned at `rate` (body frame) for the whole of the period. The identity where eq. 17 divides zero
+/// by zero, at no rate, and for a turn that is not finite.
 pub fn step<T: RealField + Copy>(rate: AngularRate<T>, period: Seconds<T>) -> UnitQuaternion<T> {
     from_half_angle(rate.rad_per_s() * (period.0 * convert(0.5)))
 }
 
-/// Integrates the gyro, and nothing else.
+/// Integrates the gyro, and nothing else: eq. 17 and 18.
 #[derive(Clone, Copy, Debug)]
 pub struct DeadReckoning<T: RealField> {
     sample_period: Seconds<T>,
@@ -30,19 +31,21 @@ impl<T: RealField + Copy> DeadReckoning<T> {
         }
     }
 
-    /// Starts again from this orientation, body to world.
+    /// Starts again from this orientation, body to world; from the identity if it is zero or not
+    /// finite.
     pub fn set(&mut self, orientation: UnitQuaternion<T>) {
         self.orientation = renormalised(orientation);
     }
 
-    /// Eq. 18: q ← q q_Δ. On the right, because q_Δ is a turn in the body's own axes.
+    /// Eq. 18: q ← q q_Δ. On the right, because q_Δ is a turn in the body's own axes. A rate that is
+    /// not finite turns nothing.
     pub fn update(&mut self, reading: &Reading<T>) -> UnitQuaternion<T> {
         let q_delta = step(reading.rate(), self.sample_period);
         self.orientation = renormalised(self.orientation * q_delta);
         self.orientation
     }
 
-    /// Body to world.
+    /// As of the last sample, body to world.
     pub fn orientation(&self) -> UnitQuaternion<T> {
         self.orientation
     }

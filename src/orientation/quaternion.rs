@@ -35,7 +35,7 @@ use nalgebra::{Matrix3, Quaternion, RealField, Unit, UnitQuaternion, Vector3, co
 /// within.
 const ORTHONORMAL: f64 = 5e-3;
 
-/// A turn by an angle about an axis.
+/// A turn by an angle about an axis: θ and v of eq. 13, 35 and 36.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisAngle<T: RealField> {
     /// v, of unit length.
@@ -44,7 +44,7 @@ pub struct AxisAngle<T: RealField> {
     pub angle: Angle<T>,
 }
 
-/// Why a matrix is not one of a rotation.
+/// Why a matrix is not one of a rotation, so that eq. 34 does not hold for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotARotation {
     /// Its columns are not of unit length and at right angles (or not even numbers).
@@ -69,6 +69,12 @@ impl core::error::Error for NotARotation {}
 /// q/‖q‖ (eq. 26), of any length that is not zero. None for zero and for what is not finite.
 pub fn unit<T: RealField + Copy>(q: Quaternion<T>) -> Option<UnitQuaternion<T>> {
     finite_unit(q)
+}
+
+/// What claims to be of unit length, which `new_unchecked` lets anything, made so. The identity for
+/// zero and for what is not finite.
+pub(crate) fn trued<T: RealField + Copy>(q: UnitQuaternion<T>) -> UnitQuaternion<T> {
+    renormalised(q)
 }
 
 /// q⁻¹ = q*/‖q‖² of eq. 29, for a quaternion of any length. None for zero, for what is not
@@ -104,7 +110,7 @@ pub fn from_axis_angle<T: RealField + Copy>(
 /// The printed form goes the long way round for q_w < 0, is not a number where rounding makes
 /// |q_w| > 1, divides zero by zero at the identity, and of a small angle in single precision keeps
 /// half the digits, as every arc cosine does. Here θ/2 = atan2(‖(x, y, z)‖, w). The identity has
-/// no axis: its angle is 0, about x.
+/// no axis: its angle is 0, about x; and so is that of what is zero or not finite.
 pub fn axis_angle<T: RealField + Copy>(q: UnitQuaternion<T>) -> AxisAngle<T> {
     let q = short_way(renormalised(q));
     let v = q.imag();
@@ -128,6 +134,10 @@ pub fn axis_angle<T: RealField + Copy>(q: UnitQuaternion<T>) -> AxisAngle<T> {
 /// The printed form divides by q_w, which is zero at every half turn. The four squares 4w², 4x²,
 /// 4y², 4z² can all be read off the diagonal; the largest is at least 1, and dividing by its root
 /// is always safe. The matrix may be off by rounding: what comes back is of unit length.
+///
+/// # Errors
+///
+/// [`NotARotation`] says what is wrong with a matrix that is further off, or not finite.
 pub fn from_matrix<T: RealField + Copy>(r: &Matrix3<T>) -> Result<UnitQuaternion<T>, NotARotation> {
     let deviation = r.transpose() * r - Matrix3::identity();
     // Not a number is not within either.
@@ -176,7 +186,7 @@ pub fn from_matrix<T: RealField + Copy>(r: &Matrix3<T>) -> Result<UnitQuaternion
 /// the same rotation); outside of that the nearer end, and `from` if it is not a number.
 ///
 /// Two orientations half a turn apart have no shorter way; the axis is then that of
-/// [`axis_angle`].
+/// [`axis_angle`]. One that is zero or not finite counts as the identity.
 pub fn slerp<T: RealField + Copy>(
     from: UnitQuaternion<T>,
     to: UnitQuaternion<T>,

@@ -11,7 +11,7 @@ use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
 /// millisecond, the most a sensor can report, is 9.2e-4.
 const SMALL: f64 = 1e-3;
 
-/// q(φ, n) of eq. 13: cos |h| + sin |h| · h/|h|. The identity if h is not finite.
+/// q(φ, n) of eq. 13: cos |h| + sin |h| · h/|h|. The identity if |h|² is not finite.
 pub(super) fn from_half_angle<T: RealField + Copy>(h: Vector3<T>) -> UnitQuaternion<T> {
     let squared = h.norm_squared();
     if squared < convert(SMALL) {

@@ -2,7 +2,7 @@
 //! ought to point up; the shortest turn that makes it do so is the correction. It never turns
 //! about the vertical, so it leaves yaw alone, of which an accelerometer knows nothing.
 
-use super::rotation::from_half_angle;
+use super::rotation::{from_half_angle, renormalised};
 use crate::units::SpecificForce;
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
 
@@ -18,11 +18,13 @@ pub fn correction<T: RealField + Copy>(force: SpecificForce<T>, fraction: T) -> 
 }
 
 /// Turns `orientation` about a horizontal axis until `force` (**body** frame) points up in the
-/// world: full correction, yaw kept.
+/// world: full correction, yaw kept. An orientation that is none, which `new_unchecked` lets anyone
+/// make, is taken for the identity.
 pub fn level<T: RealField + Copy>(
     orientation: UnitQuaternion<T>,
     force: SpecificForce<T>,
 ) -> UnitQuaternion<T> {
+    let orientation = renormalised(orientation);
     correction(in_world(orientation, force), T::one()) * orientation
 }
 
@@ -30,7 +32,8 @@ pub fn level<T: RealField + Copy>(
 /// world.
 ///
 /// The product q a q⁻¹ is worked out with two cross products instead of two quaternion products:
-/// the same vector for half the arithmetic.
+/// the same vector for half the arithmetic. What is not finite stays so; [`correction`] then
+/// corrects nothing.
 pub fn in_world<T: RealField + Copy>(
     orientation: UnitQuaternion<T>,
     force: SpecificForce<T>,

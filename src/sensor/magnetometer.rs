@@ -89,7 +89,12 @@ impl RawField {
         }
     }
 
-    /// The field in the body frame, adjusted.
+    /// The field in µT, in the body frame ([`to_body`]), adjusted. In place of eq. 5 of the course
+    /// notes, which does not hold here.
+    ///
+    /// # Errors
+    ///
+    /// [`FieldError`], where the counts are not those of a field.
     pub fn field<T: RealField + Copy>(
         &self,
         adjustment: SensitivityAdjustment,

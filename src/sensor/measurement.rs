@@ -73,7 +73,7 @@ impl<Q: Triaxial> MeasurementModel<Q> {
         Self { mixing, bias }
     }
 
-    /// Eq. 4.
+    /// Eq. 4: a mixing matrix and no bias.
     pub fn without_bias(mixing: Matrix3<Q::Scalar>) -> Self {
         Self::new(mixing, Q::from_components(Vector3::zeros()))
     }
@@ -88,7 +88,8 @@ impl<Q: Triaxial> MeasurementModel<Q> {
         Self::without_bias(Matrix3::identity())
     }
 
-    /// What is measured of `truth`, with this much noise η added.
+    /// Eq. 3: what is measured of `truth` (body frame), with this much noise η added. What is not
+    /// finite stays so.
     pub fn measured(&self, truth: Q, noise: Q) -> Q {
         let clean = self.mixing * truth.components() + self.bias.components();
         Q::from_components(clean + noise.components())
@@ -102,7 +103,7 @@ impl<Q: Triaxial> MeasurementModel<Q> {
     }
 }
 
-/// 001: true = A · measured + b.
+/// 001: true = A · measured + b, its ω̃ = A ω + b. Body frame; b in the unit of the quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibration<Q: Triaxial> {
     matrix: Matrix3<Q::Scalar>,
@@ -125,7 +126,7 @@ impl<Q: Triaxial> Calibration<Q> {
         self.offset
     }
 
-    /// The calibrated measurement.
+    /// The calibrated measurement, 001's ω̃. What is not finite stays so.
     pub fn corrected(&self, measured: Q) -> Q {
         Q::from_components(self.matrix * measured.components() + self.offset.components())
     }
@@ -142,10 +143,10 @@ fn solved<T: RealField + Copy>(n: &Matrix3<T>, c: Vector3<T>) -> Option<(Matrix3
     let inverse = n.try_inverse()?;
     let offset = -(inverse * c);
     // Rounding leaves a singular matrix a tiny determinant. What then comes out is no inverse.
-    let error = (n * inverse - Matrix3::identity()).amax();
+    let error = n * inverse - Matrix3::identity();
     // False for what is not a number.
-    let inverted = error < T::default_epsilon().sqrt();
-    (inverted && offset.iter().all(|c| c.is_finite())).then_some((inverse, offset))
+    let within = |e: &T| e.abs() < T::default_epsilon().sqrt();
+    (error.iter().all(within) && offset.iter().all(|c| c.is_finite())).then_some((inverse, offset))
 }
 
 /// Eq. 2 without its noise: a = a⁽ᵍ⁾ + a⁽ˡ⁾ in the body frame, for a body with this orientation

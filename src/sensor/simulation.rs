@@ -51,7 +51,7 @@ impl Gaussian {
     }
 }
 
-/// Three axes of one kind, with their faults and their noise.
+/// Three axes of one kind, with their faults and their noise: eq. 1, 2, 3 or 4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimulatedTriad<Q: Triaxial> {
     model: MeasurementModel<Q>,
@@ -71,7 +71,7 @@ impl<Q: Triaxial> SimulatedTriad<Q> {
     }
 }
 
-/// Gyro and accelerometer with their converters.
+/// Gyro and accelerometer with their converters: eq. 1 to 4, and eq. 5 the other way.
 #[derive(Clone, Debug)]
 pub struct SimulatedImu<T: RealField + Copy> {
     gyro: SimulatedTriad<AngularRate<T>>,

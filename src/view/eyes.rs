@@ -20,7 +20,7 @@ pub enum Eye {
     Right,
 }
 
-/// The distance between the centres of the pupils.
+/// The distance between the centres of the pupils, `ipd` of algorithm 2, in millimetres.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct InterpupillaryDistance<T>(Millimetres<T>);
 

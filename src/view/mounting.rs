@@ -20,7 +20,8 @@ impl Mounting {
     ///
     /// With F the half turn about y it is F q F⁻¹ = (w, −x, y, −z), the notes'
     /// `glRotatef(-angle, -axisX, axisY, -axisZ)`: the *axis* is expressed in the headset's frame.
-    /// The product q F is off by 180° at every orientation.
+    /// The product q F is off by 180° at every orientation. Signs are all that changes, so what is not
+    /// of unit length or not finite stays so; [`super::viewer::Viewer::view`] says so.
     pub fn head<T: RealField + Copy>(self, board: UnitQuaternion<T>) -> UnitQuaternion<T> {
         match self {
             Self::Aligned => board,

@@ -105,7 +105,7 @@ impl<T: RealField + Copy> Projection<T> {
         )
     }
 
-    /// M_proj.
+    /// M_proj, camera to clip space, for homogeneous columns (x, y, z, 1).
     pub fn matrix(self) -> Matrix4<T> {
         self.0
     }

@@ -26,7 +26,7 @@ pub enum GimbalLock {
     Resolve,
 }
 
-/// Roll φ, pitch θ and yaw ψ.
+/// Roll φ, pitch θ and yaw ψ of section 3.1: device against north, east and down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaitBryan<T> {
     /// φ about x, −π to π.
@@ -38,7 +38,7 @@ pub struct TaitBryan<T> {
 }
 
 impl<T: RealField + Copy> TaitBryan<T> {
-    /// φ, θ and ψ, as they come.
+    /// φ, θ and ψ in radians, as they come: neither wrapped nor checked.
     pub fn from_rad(roll: T, pitch: T, yaw: T) -> Self {
         Self {
             roll: Angle::from_rad(roll),
@@ -77,10 +77,13 @@ impl<T: RealField + Copy> TaitBryan<T> {
     /// R(φ, θ, ψ) = R_x(φ) R_y(θ) R_z(ψ) of section 3.1, reference to device.
     ///
     /// The paper calls these turns about the axes of the reference frame. They are turns about
-    /// the device's own axes, z first, then the new y, then the new x.
+    /// the device's own axes, z first, then the new y, then the new x. An angle that is not finite
+    /// counts as zero.
     pub fn matrix(&self) -> Rotation3<T> {
         // The paper's factors turn the frame, nalgebra's turn vectors.
-        let turn = |axis, angle: Angle<T>| Rotation3::from_axis_angle(&axis, -angle.rad());
+        let turn = |axis, angle: Angle<T>| {
+            Rotation3::from_axis_angle(&axis, -angle.finite_or_zero().rad())
+        };
         turn(Vector3::x_axis(), self.roll)
             * turn(Vector3::y_axis(), self.pitch)
             * turn(Vector3::z_axis(), self.yaw)

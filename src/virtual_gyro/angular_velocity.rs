@@ -8,7 +8,7 @@ use super::angles::TaitBryan;
 use crate::units::{AngularRate, Seconds};
 use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
 
-/// One angular velocity, seen from two frames.
+/// One angular velocity (section 3.5.5), seen from two frames, north-east-down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngularVelocity<T> {
     /// ω_d, about the device's axes.
@@ -18,7 +18,8 @@ pub struct AngularVelocity<T> {
 }
 
 impl<T: RealField + Copy> AngularVelocity<T> {
-    /// 2 q⁻¹ q̇ and 2 q̇ q⁻¹, for a q device to reference and its derivative (1/s).
+    /// 2 q⁻¹ q̇ and 2 q̇ q⁻¹, for a q device to reference and its derivative (1/s). What is not finite
+    /// stays so.
     pub fn from_derivative(q: &UnitQuaternion<T>, q_dot: &Quaternion<T>) -> Self {
         let inverse = q.conjugate().into_inner();
         let two: T = convert(2.0);
@@ -28,7 +29,7 @@ impl<T: RealField + Copy> AngularVelocity<T> {
         }
     }
 
-    /// From the rates of the three angles, in rad/s: (φ̇, θ̇, ψ̇).
+    /// From the rates of the three angles, in rad/s: (φ̇, θ̇, ψ̇). What is not finite stays so.
     pub fn from_angle_rates(angles: &TaitBryan<T>, rates: Vector3<T>) -> Self {
         let (sin_phi, cos_phi) = angles.roll.rad().sin_cos();
         let (sin_theta, cos_theta) = angles.pitch.rad().sin_cos();

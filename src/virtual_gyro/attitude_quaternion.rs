@@ -5,16 +5,21 @@
 //! unit quaternion only.
 
 use super::angles::{TaitBryan, is_locked, wrapped};
+use crate::orientation::quaternion::trued;
 use nalgebra::{Quaternion, RealField, Rotation3, UnitQuaternion, Vector3, convert};
 
 /// q = q_ψ q_θ q_φ of section 3.6.
 ///
 /// With the product of eq. 5 and the matrices of section 3.1 the factors stand in this order. The
-/// printed one, q_φ q_θ q_ψ, is neither this attitude nor its inverse.
+/// printed one, q_φ q_θ q_ψ, is neither this attitude nor its inverse. An angle that is not finite
+/// counts as zero.
 pub fn from_angles<T: RealField + Copy>(angles: &TaitBryan<T>) -> UnitQuaternion<T> {
-    let q_phi = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angles.roll.rad());
-    let q_theta = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angles.pitch.rad());
-    let q_psi = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angles.yaw.rad());
+    let q_phi =
+        UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angles.roll.finite_or_zero().rad());
+    let q_theta =
+        UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angles.pitch.finite_or_zero().rad());
+    let q_psi =
+        UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angles.yaw.finite_or_zero().rad());
     q_psi * q_theta * q_phi
 }
 
@@ -62,10 +67,13 @@ pub fn from_matrix<T: RealField + Copy>(matrix: &Rotation3<T>) -> Option<UnitQua
 /// arc tangents. The same angles come from half sums, which do not:
 /// tan((φ − ψ)/2) = (q₁ − q₃)/(q₄ + q₂) and tan((φ + ψ)/2) = (q₁ + q₃)/(q₄ − q₂), where the
 /// hypotenuses are cos(θ/2) ± sin(θ/2). (The paper keeps θ at the singularity; but θ is known.)
+///
+/// A quaternion that is zero or not finite counts as the identity.
 pub fn to_angles<T: RealField + Copy>(
     q: &UnitQuaternion<T>,
     previous: Option<TaitBryan<T>>,
 ) -> TaitBryan<T> {
+    let q = trued(*q);
     let (q1, q2, q3, q4) = (q.i, q.j, q.k, q.w);
     let half = |sine: T, cosine: T| (sine.hypot(cosine), sine.atan2(cosine));
     let (plus, half_difference) = half(q1 - q3, q4 + q2);

@@ -30,7 +30,7 @@ impl<T: RealField + Copy> CutOff<T> {
     }
 }
 
-/// What the filter multiplies with.
+/// What the filter multiplies with: b₀, b₁ and a₁ of H(z), without unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients<T> {
     /// Weight of the present input.

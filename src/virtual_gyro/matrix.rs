@@ -23,7 +23,6 @@ pub fn from_gravity<T: RealField + Copy>(directions: &Directions<T>) -> Rotation
 pub fn from_field<T: RealField + Copy>(directions: &Directions<T>, dip: Angle<T>) -> Rotation3<T> {
     let along = directions.magnetic();
     let east = directions.east();
-    let east = (east - along * along.dot(&east)).normalize();
     let across = along.cross(&east);
     let (sin, cos) = dip.rad().sin_cos();
     columns(along * cos - across * sin, east, along * sin + across * cos)

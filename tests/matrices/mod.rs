@@ -57,8 +57,13 @@ pub fn degrees_between(a: &Matrix, b: &Matrix) -> f64 {
     angle_between(a, b).to_degrees()
 }
 
+/// The larger of the two; not a number if either is not, which `f64::max` would pass over.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
 /// The largest difference of two matrices' elements.
 pub fn largest_difference(a: &Matrix, b: &Matrix) -> f64 {
     let pairs = a.iter().flatten().zip(b.iter().flatten());
-    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, larger)
 }

@@ -1,6 +1,6 @@
 //! Cameras as plain arrays in double precision.
 
-use crate::rotations::{Matrix, Vector, apply, transpose};
+use crate::rotations::{Matrix, Vector, apply, larger, transpose};
 use nalgebra::{Matrix4, RealField};
 
 /// A camera by its view matrix: what it turns by, and what it then shifts by.
@@ -49,6 +49,6 @@ impl Camera {
     pub fn off(&self, other: &Self) -> f64 {
         let turns = self.turn.iter().flatten().zip(other.turn.iter().flatten());
         let pairs = turns.chain(self.shift.iter().zip(&other.shift));
-        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, larger)
     }
 }

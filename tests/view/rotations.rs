@@ -1,6 +1,6 @@
 //! Rotations at random, with the corners among them.
 
-pub use crate::matrices::{Matrix, Vector, apply, length, product, rotation, transpose};
+pub use crate::matrices::{Matrix, Vector, apply, larger, length, product, rotation, transpose};
 pub use crate::random::Random;
 
 impl Random {

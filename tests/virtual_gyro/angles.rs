@@ -15,7 +15,7 @@ fn resolved<T: RealField + Copy>(attitude: &Matrix, dip: f64) -> TaitBryan<T> {
 #[test]
 fn r_is_the_product_of_the_printed_matrices() {
     let mut random = Random(1);
-    for _ in 0..10_000 {
+    for _ in 0..100_000 {
         let [phi, theta, psi] = random.attitude();
         let angles = TaitBryan::from_rad(phi, theta, psi);
         assert!(largest_difference(&rows(&angles.matrix()), &r([phi, theta, psi])) < 1e-15 * 10.0);
@@ -25,7 +25,7 @@ fn r_is_the_product_of_the_printed_matrices() {
 #[test]
 fn the_fields_in_the_device_frame_are_the_turned_fields_of_the_earth() {
     let mut random = Random(2);
-    for _ in 0..10_000 {
+    for _ in 0..100_000 {
         let angles = random.attitude();
         let dip = random.between(-1.5, 1.5);
         let earth = Earth {
@@ -36,8 +36,8 @@ fn the_fields_in_the_device_frame_are_the_turned_fields_of_the_earth() {
         let [phi, theta, psi] = angles;
         let here = earth.in_device(&TaitBryan::from_rad(phi, theta, psi).matrix());
         let expected = seen::<f64>(&r(angles), dip);
-        assert!((here.gravity - expected.gravity).amax() < 1e-13);
-        assert!((here.magnetic - expected.magnetic).amax() < 1e-13);
+        assert!((here.gravity - expected.gravity).norm() < 1e-13);
+        assert!((here.magnetic - expected.magnetic).norm() < 1e-13);
         // Eq. 2: gravity does not see ψ.
         let without = apply(&product(&rx(phi), &ry(theta)), [0.0, 0.0, 9.81]);
         assert!(apart(array(here.gravity), without) < 1e-13);
@@ -47,7 +47,7 @@ fn the_fields_in_the_device_frame_are_the_turned_fields_of_the_earth() {
 #[test]
 fn eq_3_and_4_give_back_the_angles() {
     let mut random = Random(3);
-    for _ in 0..100_000 {
+    for _ in 0..2_000_000 {
         let angles = [
             random.between(-PI, PI),
             random.between(-1.5, 1.5),
@@ -60,13 +60,13 @@ fn eq_3_and_4_give_back_the_angles() {
 
 fn worst<T: RealField + Copy>() -> f64 {
     let mut random = Random(4);
-    (0..200_000)
+    (0..2_000_000)
         .map(|_| {
             let attitude = r(random.attitude());
             let dip = random.between(-1.2, 1.2);
             largest_difference(&r(rad(&resolved::<T>(&attitude, dip))), &attitude)
         })
-        .fold(0.0, f64::max)
+        .fold(0.0, larger)
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn a_tilt_of_a_ten_thousandth_is_resolved_in_single_precision() {
 fn at_the_singularities_the_heading_is_continuous() {
     // The continuous solution, for every heading and not only for table 1's four.
     let mut random = Random(5);
-    for _ in 0..10_000 {
+    for _ in 0..100_000 {
         let (phi, psi) = (random.between(-PI, PI), random.between(-PI, PI));
         for (theta, sign) in [(FRAC_PI_2, -1.0), (-FRAC_PI_2, 1.0)] {
             let attitude = r([phi, theta, psi]);

@@ -4,7 +4,7 @@ use nalgebra::{RealField, Rotation3, UnitQuaternion, Vector3, convert, try_conve
 use vrduino::virtual_gyro::{Directions, Fields, TaitBryan};
 
 pub use crate::matrices::{
-    Matrix, Vector, apply, degrees_between, largest_difference, product, rotation as about,
+    Matrix, Vector, apply, degrees_between, larger, largest_difference, product, rotation as about,
     transpose,
 };
 pub use crate::random::Random;
@@ -34,7 +34,7 @@ pub fn apart(a: Vector, b: Vector) -> f64 {
     a.iter()
         .zip(b)
         .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f64::max)
+        .fold(0.0, larger)
 }
 
 /// g_r and B_r (9.81 m/s² and 48 µT) turned into the device frame by R.

@@ -33,6 +33,7 @@ pub const MAGIC: &[u8; 4] = b"IMUB";
 const VERSION: u16 = 1;
 const HEADER: usize = 64;
 const RECORD: usize = 28;
+const SCORED: u16 = 1 << 0;
 const REFERENCE_VALID: u16 = 1 << 1;
 
 /// Sampling rates that can be meant (Hz): from a very slow logger to the fastest the MPU-9250
@@ -47,14 +48,62 @@ pub fn y_up_from_enu(body_to_enu: [f64; 4]) -> [f64; 4] {
     multiply([FRAC_1_SQRT_2, -FRAC_1_SQRT_2, 0.0, 0.0], body_to_enu)
 }
 
-/// Reads a recording.
+/// What a recording holds, before anything is made of it.
+#[derive(Debug, Clone)]
+pub struct File {
+    /// Samples per second.
+    pub rate: f64,
+    /// rad/s, m/s² and µT per count.
+    pub scales: [f64; 3],
+    /// One a sample.
+    pub records: Vec<Record>,
+}
+
+/// One sample of a recording.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Record {
+    /// Gyroscope, accelerometer and magnetometer, body frame.
+    pub counts: [[i16; 3]; 3],
+    /// The reference, body → world with y up, where it is valid.
+    pub truth: Option<[f64; 4]>,
+    /// Whether a benchmark counts this sample: the sensor moves.
+    pub scored: bool,
+}
+
+/// Reads a recording as a motion.
+///
+/// # Errors
+///
+/// Those of [`read`].
+pub fn parse(bytes: &[u8]) -> Result<Recording, MotionError> {
+    let file = read(bytes)?;
+    let samples = file
+        .records
+        .iter()
+        .enumerate()
+        .map(|(number, record)| {
+            let [rate, force, field] =
+                [0, 1, 2].map(|i| record.counts[i].map(|count| f64::from(count) * file.scales[i]));
+            let instant = Instant {
+                rate,
+                force,
+                field: Some(field),
+                truth: record.truth,
+            };
+            (number as f64 / file.rate, instant)
+        })
+        .collect();
+    Recording::new("recording", samples).ok_or(MotionError::Empty)
+}
+
+/// Reads a recording as it is.
 ///
 /// # Errors
 ///
 /// [`MotionError`] if the bytes break a rule of the format: magic, version, header size, a length
-/// that is not 64 + 28 N, no record, a scale or rate that cannot be meant, or a reference that is
-/// marked valid and is no rotation.
-pub fn parse(bytes: &[u8]) -> Result<Recording, MotionError> {
+/// that is not 64 + 28 N, a scale or rate that cannot be meant, or a reference that is marked valid
+/// and is no rotation.
+pub fn read(bytes: &[u8]) -> Result<File, MotionError> {
     if !bytes.starts_with(MAGIC) {
         return Err(MotionError::Header {
             field: "magic",
@@ -83,31 +132,24 @@ pub fn parse(bytes: &[u8]) -> Result<Recording, MotionError> {
         });
     }
     let rate = sampling_rate(u32_at(header, 12), u32_at(header, 16))?;
-    let gyro_scale = scale(header, 20, "gyroscope scale", "rad/s per count")?;
-    let accel_scale = scale(header, 24, "accelerometer scale", "m/s² per count")?;
-    let mag_scale = scale(header, 28, "magnetometer scale", "µT per count")?;
-
+    let scales = [
+        scale(header, 20, "gyroscope scale", "rad/s per count")?,
+        scale(header, 24, "accelerometer scale", "m/s² per count")?,
+        scale(header, 28, "magnetometer scale", "µT per count")?,
+    ];
     let (records, _) = records.as_chunks::<RECORD>();
-    let samples = records
-        .iter()
-        .enumerate()
-        .map(|(number, record)| {
-            Ok((
-                number as f64 / rate,
-                Instant {
-                    rate: std::array::from_fn(|i| f64::from(i16_at(record, 2 * i)) * gyro_scale),
-                    force: std::array::from_fn(|i| {
-                        f64::from(i16_at(record, 6 + 2 * i)) * accel_scale
-                    }),
-                    field: Some(std::array::from_fn(|i| {
-                        f64::from(i16_at(record, 12 + 2 * i)) * mag_scale
-                    })),
-                    truth: reference(number, record)?,
-                },
-            ))
+    let records = records.iter().enumerate().map(|(number, record)| {
+        Ok(Record {
+            counts: [0, 6, 12].map(|sensor| [0, 2, 4].map(|axis| i16_at(record, sensor + axis))),
+            truth: reference(number, record)?,
+            scored: u16_at(record, 26) & SCORED != 0,
         })
-        .collect::<Result<Vec<_>, MotionError>>()?;
-    Recording::new("recording", samples).ok_or(MotionError::Empty)
+    });
+    Ok(File {
+        rate,
+        scales,
+        records: records.collect::<Result<_, MotionError>>()?,
+    })
 }
 
 fn sampling_rate(numerator: u32, denominator: u32) -> Result<f64, MotionError> {

@@ -24,7 +24,8 @@ use crate::orientation::flatland::shortest_turn;
 use crate::units::{Angle, AngularRate, Seconds};
 use nalgebra::RealField;
 
-/// θ_x += ω_x Δt, θ_y += ω_y Δt, θ_z += ω_z Δt, “for each axis separately”.
+/// θ_x += ω_x Δt, θ_y += ω_y Δt, θ_z += ω_z Δt, “for each axis separately”: the lecture's dead
+/// reckoning. It has no equation numbers. Each angle stays from −180° to 180°.
 #[derive(Clone, Copy, Debug)]
 pub struct LectureDeadReckoning<T> {
     sample_period: Seconds<T>,
@@ -45,7 +46,7 @@ impl<T: RealField + Copy> LectureDeadReckoning<T> {
         self.angles = within_a_turn(angles);
     }
 
-    /// One sample. What is not finite in it changes nothing.
+    /// One sample, body frame. What is not finite in it changes nothing.
     pub fn update(&mut self, reading: &Reading<T>) -> EulerAngles<T> {
         self.angles = turned(self.angles, reading.rate(), self.sample_period);
         self.angles
@@ -57,7 +58,8 @@ impl<T: RealField + Copy> LectureDeadReckoning<T> {
     }
 }
 
-/// θ_x = α(θ_x + ω_x Δt) + (1 − α) pitch, θ_z the same with roll, and θ_y from the gyro alone.
+/// θ_x = α(θ_x + ω_x Δt) + (1 − α) pitch, θ_z the same with roll, and θ_y from the gyro alone. Each
+/// angle stays from −180° to 180°.
 #[derive(Clone, Copy, Debug)]
 pub struct LectureComplementary<T> {
     sample_period: Seconds<T>,
@@ -67,7 +69,7 @@ pub struct LectureComplementary<T> {
 }
 
 impl<T: RealField + Copy> LectureComplementary<T> {
-    /// Starts from zero.
+    /// Starts from zero. For the lecture's α see [`TimeConstant::from_gyro_weight`].
     pub fn new(time_constant: TimeConstant<T>, sample_period: Seconds<T>) -> Self {
         Self {
             sample_period,
@@ -81,8 +83,8 @@ impl<T: RealField + Copy> LectureComplementary<T> {
         self.angles = within_a_turn(angles);
     }
 
-    /// One sample. What is not finite in it changes nothing, and a force without direction leaves
-    /// pitch and roll to the gyro.
+    /// One sample, body frame. What is not finite in it changes nothing, and a force without direction
+    /// leaves pitch and roll to the gyro.
     pub fn update(&mut self, reading: &Reading<T>) -> EulerAngles<T> {
         let by_gyro = turned(self.angles, reading.rate(), self.sample_period);
         let force = reading.force().m_per_s2();

@@ -3,7 +3,8 @@
 //! The notes and the lectures put it down to the integration error mostly. It is the other way
 //! round: the error of a step is of the order of Δt², as they say, but in a sum of steps nearly
 //! everything cancels, and what is left is bounded. A bias left in the readings is not. All rates
-//! are about z, the axis flatland turns about, and all errors are estimate minus truth.
+//! are about z, the axis flatland turns about, and all errors are estimate minus truth. What is not
+//! finite makes an error that is not.
 
 use crate::orientation::TimeConstant;
 use crate::units::{Angle, AngularRate, Seconds};
@@ -16,12 +17,14 @@ pub fn gyro_drift<T: RealField + Copy>(bias: AngularRate<T>, time: Seconds<T>) -
 
 /// Of eq. 9 in the long run, from a bias left in the readings: α Δt b/(1 − α) = τ b.
 ///
-/// “No drift” is not “no error”: the angle stands still, but off by this.
+/// “No drift” is not “no error”: the angle stands still, but off by this. None where it never
+/// stands still, as with the gyro alone (α = 1), and for a bias that is not finite.
 pub fn fused_offset<T: RealField + Copy>(
     bias: AngularRate<T>,
     time_constant: TimeConstant<T>,
-) -> Angle<T> {
-    Angle::from_rad(bias.rad_per_s().z * time_constant.time().0)
+) -> Option<Angle<T>> {
+    let offset = bias.rad_per_s().z * time_constant.time().0;
+    offset.is_finite().then(|| Angle::from_rad(offset))
 }
 
 /// Of eq. 6 from step to step, with a perfect gyro: −Δt/2 (ω(T) − ω(0)) and terms of Δt² (Euler and

@@ -13,7 +13,7 @@ use crate::orientation::TimeConstant;
 use crate::units::Seconds;
 use nalgebra::{Complex, RealField, convert};
 
-/// The two transfer functions of one filter.
+/// The two transfer functions of one filter of eq. 9. They have no unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Response<T> {
     sample_period: Seconds<T>,
