@@ -26,7 +26,7 @@ fn main() {
             temperature: 0,
             fresh: true,
         };
-        tracker.update(&raw, &Health::default(), &mut |line| {
+        tracker.update(&raw, None, &Health::default(), &mut |line| {
             // Text as it comes, orientations ten times a second.
             if !line.starts_with("QC") || millisecond % 100 == 9 {
                 print!("{:5} ms  {line}", millisecond + 1);

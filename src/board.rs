@@ -26,7 +26,9 @@ pub mod watchdog;
 
 use cortex_m::peripheral::NVIC;
 use mk20dx_hal::pac;
+use vrduino::imu::magnetometer::MagnetometerError;
 use vrduino::sensor::RawSample;
+use vrduino::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use vrduino::tracker::Health;
 use vrduino::wire;
 
@@ -51,6 +53,9 @@ pub struct Board {
     watchdog: Watchdog,
     last_life: Option<breadcrumb::LastLife>,
     fault: Option<Fault>,
+    /// Why the board runs on six axes, if it does.
+    no_compass: Option<MagnetometerError<i2c::Error>>,
+    introduced: bool,
 }
 
 impl Board {
@@ -76,33 +81,49 @@ impl Board {
             watchdog: Watchdog::new(chip.wdog),
             last_life,
             fault: None,
+            no_compass: None,
+            introduced: false,
         }
     }
 
-    /// Finds the sensor, sets it up and starts sampling.
-    pub fn start_imu(&mut self) -> Result<(), Fault> {
+    /// Finds the sensor, sets it up and starts sampling. Returns what the factory found out about its
+    /// magnetometer, if there is one that works.
+    pub fn start_imu(&mut self) -> Result<Option<SensitivityAdjustment>, Fault> {
         breadcrumb::mark(Stage::ImuStart);
-        self.imu.start(&mut self.time, &mut self.watchdog)?;
+        let compass = self.imu.start(&mut self.time, &mut self.watchdog)?;
         if self.fault.take().is_some() {
             self.usb.send(&wire::text("the IMU answers again"));
         }
-        Ok(())
+        let before = self.no_compass;
+        self.no_compass = compass.err();
+        // Who has not opened the port yet is told when that is done.
+        if self.introduced && self.no_compass != before {
+            self.tell_of_compass();
+        }
+        Ok(compass.ok())
     }
 
-    /// Sleeps until the next millisecond's sample is there.
+    /// Sleeps until the next millisecond's sample is there, every tenth or so with a field.
     ///
     /// A burst that failed is bridged by the sample before it, marked as not fresh; a sensor that
-    /// fails for longer is a fault.
-    pub fn next_sample(&mut self) -> Result<RawSample, Fault> {
+    /// fails for longer is a fault. A magnetometer that fails is none: tracking goes on without.
+    pub fn next_sample(&mut self) -> Result<(RawSample, Option<RawField>), Fault> {
         breadcrumb::mark(Stage::Sampling);
-        self.imu.next_sample()
+        let (sample, field) = self.imu.next_sample()?;
+        if let Some(Err(loss)) = field {
+            self.no_compass = Some(MagnetometerError::Lost(loss));
+            self.tell_of_compass();
+        }
+        Ok((sample, field.and_then(Result::ok)))
     }
 
     /// Counters for the INFO lines.
     pub fn health(&self) -> Health {
+        let counts = imu::counts();
         Health {
             dropped_lines: usb::dropped_lines(),
-            overruns: self.imu.overruns(),
+            overruns: counts.overruns,
+            skipped_fields: counts.skipped_fields,
         }
     }
 
@@ -151,6 +172,15 @@ impl Board {
         if let Some(last_life) = self.last_life {
             self.usb
                 .send(&wire::text(format_args!("warning: {last_life}")));
+        }
+        self.introduced = true;
+        self.tell_of_compass();
+    }
+
+    /// Says why there is no compass, if there is none.
+    fn tell_of_compass(&mut self) {
+        if let Some(error) = self.no_compass {
+            self.usb.send(&wire::magnetometer_failed(&error));
         }
     }
 }

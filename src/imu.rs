@@ -1,5 +1,7 @@
 //! Set-up is done by the crate `mpu9250`, which speaks embedded-hal 0.2 while this library speaks
-//! 1.0: this is the one file where the two meet.
+//! 1.0: this is the one file where the two meet. The magnetometer in the same package is set up by
+//! [`magnetometer`](crate::imu::magnetometer), since that crate takes its sensitivity without a sign
+//! and asks for neither DRDY nor overflow.
 //!
 //! What that crate does is checked, not trusted. Its first two writes (they stop the auxiliary
 //! bus, in case only the processor was restarted) ignore errors, and a sensor whose supply dipped
@@ -16,6 +18,8 @@ use embedded_hal::i2c::I2c;
 use embedded_hal_compat::{ReverseCompat, eh0_2};
 use mpu9250::{AccelDataRate, AccelScale, Dlpf, GyroScale, GyroTempDataRate, I2CError};
 use mpu9250::{InterruptEnable, Mpu9250, MpuConfig};
+
+pub mod magnetometer;
 
 /// The sensor's I²C address with its AD0 pin low, as on the VRduino.
 pub const ADDRESS: u8 = 0x68;
@@ -48,7 +52,7 @@ pub enum Part {
     Mpu9250,
     /// WHO_AM_I 0x73: differs in the name.
     Mpu9255,
-    /// WHO_AM_I 0x70, often sold as an MPU-9250: no magnetometer, which is not used here anyway.
+    /// WHO_AM_I 0x70, often sold as an MPU-9250: no magnetometer, as a rule.
     Mpu6500,
 }
 

@@ -41,7 +41,7 @@
 //! let raw = RawSample { gyro: [0; 3], accel: [0, 2048, 0], temperature: 0, fresh: true };
 //! let mut last = String::new();
 //! for _ in 0..1000 {
-//!     tracker.update(&raw, &Health::default(), &mut |line| last = line.to_string());
+//!     tracker.update(&raw, None, &Health::default(), &mut |line| last = line.to_string());
 //! }
 //! assert_eq!(last, "QC 1.000 0.000 0.000 0.000\n");
 //! ```

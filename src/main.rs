@@ -38,16 +38,17 @@ fn main() -> ! {
 ///
 /// One turn a millisecond; a turn that comes late finds its sample in a queue and catches up.
 fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> {
-    board.start_imu()?;
+    let adjustment = board.start_imu()?;
+    tracker.set_magnetometer(adjustment);
     tracker.resume();
     loop {
-        let sample = board.next_sample()?;
+        let (sample, field) = board.next_sample()?;
         while let Some(command) = board.usb.command() {
             tracker.command(command, &mut |line| board.usb.send(line));
         }
         breadcrumb::mark(Stage::Filter);
         let health = board.health();
-        tracker.update(&sample, &health, &mut |line| board.usb.send(line));
+        tracker.update(&sample, field, &health, &mut |line| board.usb.send(line));
         board.end_of_turn();
     }
 }

@@ -10,6 +10,7 @@
 //! [`SAMPLE_PERIOD`]: crate::tracker::SAMPLE_PERIOD
 
 mod answers;
+mod compass;
 mod estimators;
 
 use crate::calibration::{GyroBias, Reading, Rest, Stillness, Verdict};
@@ -17,9 +18,11 @@ use crate::command::{Command, Mode};
 use crate::orientation::flatland::Flatland;
 use crate::orientation::gyro::DeadReckoning;
 use crate::orientation::{DEFAULT_TIME_CONSTANT, angles};
+use crate::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use crate::sensor::{Ranges, RawSample, Sample};
 use crate::units::{Seconds, SpecificForce};
 use crate::wire::{self, Decimals, Line, Tag};
+use compass::Compass;
 use estimators::Estimators;
 use nalgebra::UnitQuaternion;
 
@@ -47,6 +50,8 @@ pub struct Health {
     pub dropped_lines: u32,
     /// Ticks of the timer that found the bus still busy with the last sample.
     pub overruns: u32,
+    /// Times that measurements of the magnetometer were overwritten before they were read.
+    pub skipped_fields: u32,
 }
 
 /// Everything between the sensor's counts and the lines to the host.
@@ -63,6 +68,7 @@ pub struct Tracker {
     estimators: Estimators,
     gyro: DeadReckoning<f32>,
     flat: Flatland<f32>,
+    compass: Compass,
     phase: Phase,
     ticks: u32,
     counts: Counts,
@@ -107,6 +113,7 @@ impl Tracker {
             estimators: Estimators::default(),
             gyro: DeadReckoning::new(SAMPLE_PERIOD),
             flat: Flatland::new(DEFAULT_TIME_CONSTANT, SAMPLE_PERIOD),
+            compass: Compass::none(),
             phase: Phase::Starting,
             ticks: 0,
             counts: Counts::default(),
@@ -143,15 +150,32 @@ impl Tracker {
         }
     }
 
+    /// To be called when the sensor has been set up: how sensitive its magnetometer is, if it has one.
+    /// Without, every field is passed over.
+    pub fn set_magnetometer(&mut self, adjustment: Option<SensitivityAdjustment>) {
+        self.compass = Compass::of(adjustment);
+    }
+
     /// The fused orientation, body to world; the identity until there is one.
     pub fn orientation(&self) -> UnitQuaternion<f32> {
         self.estimators.orientation()
     }
 
-    /// One sample. `emit` is given the lines it leads to: mostly none, every tenth time one to
-    /// three, and once a second up to eight.
-    pub fn update(&mut self, raw: &RawSample, health: &Health, emit: &mut impl FnMut(&Line)) {
+    /// One sample, with what the magnetometer has measured since the one before, if it has. `emit` is
+    /// given the lines they lead to: mostly none, every tenth time one to three, and once a second
+    /// up to ten.
+    pub fn update(
+        &mut self,
+        raw: &RawSample,
+        field: Option<RawField>,
+        health: &Health,
+        emit: &mut impl FnMut(&Line),
+    ) {
         self.count(raw);
+        // No filter takes the field yet: it is counted and shown.
+        if let Some(error) = self.compass.update(field).warning {
+            emit(&wire::text(format_args!("warning: {error}")));
+        }
         let sample: Sample<f32> = self.ranges.sample(raw);
         let reading = self.track(sample);
         self.measure(raw, sample.force, emit);
@@ -171,6 +195,7 @@ impl Tracker {
         if self.every(INFO_EVERY) {
             self.counts.fresh_last_second = self.counts.fresh_this_second;
             self.counts.fresh_this_second = 0;
+            self.compass.end_second();
         }
     }
 
@@ -321,6 +346,12 @@ impl Tracker {
         emit(&wire::dropped(health.dropped_lines));
         emit(&wire::repeated(self.counts.repeated));
         emit(&wire::overruns(health.overruns));
+        match self.compass.last() {
+            Some(Ok(field)) => emit(&wire::field(field, self.compass.per_second())),
+            Some(Err(error)) => emit(&wire::text(format_args!("Field: {error}"))),
+            None => emit(&wire::no_field()),
+        }
+        emit(&wire::fields_skipped(health.skipped_fields));
     }
 }
 

@@ -7,7 +7,7 @@
 use crate::calibration::Rest;
 use crate::orientation::angles::PitchRoll;
 use crate::orientation::flatland::Roll;
-use crate::units::{Angle, AngularRate, SpecificForce};
+use crate::units::{Angle, AngularRate, MagneticField, SpecificForce};
 use core::fmt::{self, Write};
 use heapless::String;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -136,6 +136,37 @@ pub fn bias_measured(bias: AngularRate<f32>) -> Line {
     end(line)
 }
 
+/// `Field: x y z uT (n Hz)`, 3 decimals, body frame, adjusted by the factory's factors and nothing
+/// else: the last measurement of the magnetometer, and how many came in the last second.
+pub fn field(field: MagneticField<f32>, per_second: u32) -> Line {
+    let mut line = Line::new();
+    push(&mut line, "Field:");
+    for value in field.microtesla().iter() {
+        push(&mut line, " ");
+        push_decimal(&mut line, *value, 3);
+    }
+    push(&mut line, " uT (");
+    push_digits(&mut line, u64::from(per_second), 1);
+    push(&mut line, " Hz)");
+    end(line)
+}
+
+/// `Field: none`: no magnetometer, or nothing from it for a second.
+pub fn no_field() -> Line {
+    text("Field: none")
+}
+
+/// `FIELDS_SKIPPED: n`: measurements of the magnetometer that were overwritten before they were
+/// read, since the start; several in a row count once.
+pub fn fields_skipped(n: u32) -> Line {
+    count("FIELDS_SKIPPED", n)
+}
+
+/// `Magnetometer: none, running on six axes`, or what is wrong with it.
+pub fn magnetometer_failed(error: &impl fmt::Display) -> Line {
+    text(format_args!("Magnetometer: {error}, running on six axes"))
+}
+
 /// `OK NAME value unit`, 4 decimals: a setting.
 pub fn answer(name: &str, value: f32, unit: &str) -> Line {
     let mut line = Line::new();
@@ -251,6 +282,7 @@ fn magnitude_in_steps(value: f32, per_one: u64) -> u64 {
 }
 
 /// Decimal digits, padded with zeros on the left to at least `width`.
+#[inline(never)] // with its loops unrolled, half a kilobyte for every place it is called from
 fn push_digits(line: &mut Line, mut value: u64, width: usize) {
     let mut digits = [b'0'; 20];
     let mut used = 0;

@@ -17,3 +17,6 @@ mod host;
 
 #[path = "boot/faults.rs"]
 mod faults;
+
+#[path = "boot/magnetometer.rs"]
+mod magnetometer;

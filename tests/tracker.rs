@@ -254,6 +254,7 @@ fn mode_0_tells_once_a_second_what_the_board_knows() {
     bench.health = Health {
         dropped_lines: 3,
         overruns: 4,
+        skipped_fields: 5,
     };
     bench.feed(2000, |i| RawSample {
         fresh: i % 100 != 0,
@@ -269,10 +270,12 @@ fn mode_0_tells_once_a_second_what_the_board_knows() {
         "DROPPED: 3\n",
         "REPEATED: 10\n",
         "OVERRUNS: 4\n",
+        "Field: none\n",
+        "FIELDS_SKIPPED: 5\n",
     ];
-    assert_eq!(bench.texts()[..8], second);
-    assert_eq!(bench.texts()[14], "REPEATED: 20\n");
-    assert_eq!(bench.lines.len(), 16);
+    assert_eq!(bench.texts()[..10], second);
+    assert_eq!(bench.texts()[16], "REPEATED: 20\n");
+    assert_eq!(bench.lines.len(), 20);
 }
 
 #[test]
@@ -285,7 +288,7 @@ fn without_a_still_window_there_is_no_variance_to_tell() {
     let texts = bench.texts();
     assert_eq!(texts[0], "nReads/sec: 1000\n");
     assert!(texts[1].starts_with("GYR_BIAS: "), "a guess");
-    assert_eq!(texts.len(), 5);
+    assert_eq!(texts.len(), 7);
 }
 
 #[test]

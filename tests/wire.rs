@@ -4,7 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use vrduino::calibration::Rest;
 use vrduino::orientation::angles::pitch_and_roll;
 use vrduino::orientation::flatland::Roll;
-use vrduino::units::{Angle, AngularRate, SpecificForce};
+use vrduino::units::{Angle, AngularRate, MagneticField, SpecificForce};
 use vrduino::wire::{self, Decimals, LINE_LEN, Line, Tag};
 
 /// A value as ACC prints it: the line holds the number as given.
@@ -99,6 +99,13 @@ fn the_info_block_has_five_decimals() {
     check(&wire::dropped(0), "DROPPED: 0\n");
     check(&wire::repeated(10), "REPEATED: 10\n");
     check(&wire::overruns(u32::MAX), "OVERRUNS: 4294967295\n");
+    check(&wire::no_field(), "Field: none\n");
+    check(&wire::fields_skipped(2), "FIELDS_SKIPPED: 2\n");
+    let field = MagneticField::from_microtesla(Vector3::new(-20.55, 0.0, 4911.999));
+    check(
+        &wire::field(field, 100),
+        "Field: -20.550 0.000 4911.999 uT (100 Hz)\n",
+    );
     check(
         &wire::bias_measured(rest.gyro_bias),
         "Bias: 0.174 -0.199 0.446 deg/s (still)\n",

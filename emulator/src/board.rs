@@ -70,6 +70,8 @@ pub struct Board {
     pc: u32,
     measure: Measure,
     storm: Storm,
+    /// Exceptions whose handlers have begun and not ended, the running one last.
+    active: Vec<u16>,
     polling: Option<Polling>,
     watch: Watch,
     /// Where the image's variables end: below this the stack must not grow.
@@ -114,6 +116,7 @@ impl Board {
             pc: 0,
             measure: Measure::new(timed),
             storm: Storm::default(),
+            active: Vec::new(),
             polling: setup.skip_polling.then(Polling::default),
             watch: Watch::default(),
             stack_limit,
@@ -183,7 +186,7 @@ impl Board {
         }
         let now_in = self.cpu.exception();
         if now_in != exception {
-            self.change_exception(now_in, moment.next_stack > stack);
+            self.change_exception(now_in, moment.next_stack < stack);
         } else if now_in >= 16 && moment.next == self.storm.handler && self.tail_chained() {
             self.enter(now_in);
         } else {
@@ -204,12 +207,17 @@ impl Board {
         }
     }
 
-    /// The processor has gone to another exception; a return, which has popped a frame, may lead to one as well.
-    fn change_exception(&mut self, to: u16, popped: bool) {
+    /// The processor has gone to another exception: into one, which pushes a frame or chains it to the end of the one
+    /// before, or back. The stack does not tell a chain from a return, for a handler may end in popping registers.
+    fn change_exception(&mut self, to: u16, pushed: bool) {
         if let Some(polling) = &mut self.polling {
             polling.disturb();
         }
-        if to != 0 && !popped {
+        if !pushed {
+            self.active.pop();
+        }
+        if to != 0 && self.active.last() != Some(&to) {
+            self.active.push(to);
             self.enter(to);
         }
     }
@@ -283,6 +291,7 @@ impl Board {
         self.asserted = 0;
         self.measure.reset();
         self.storm = Storm::default();
+        self.active.clear();
         if let Some(polling) = &mut self.polling {
             polling.disturb();
         }

@@ -77,7 +77,7 @@ const FIFO_MODE: u8 = 1 << 6;
 /// ACCEL_INTEL_EN and ACCEL_INTEL_MODE of MOT_DETECT_CTRL.
 const WAKE_ON_MOTION: u8 = 3 << 6;
 
-/// What is wrong with the sensor or its wires, for tests and `--fault`.
+/// What is wrong with the sensor, its magnetometer or the wires, for tests and `--fault`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Faults {
     /// Nothing answers.
@@ -93,6 +93,8 @@ pub struct Burst {
     pub at: Ticks,
     /// INT_STATUS, accelerometer, temperature, gyroscope: 0x3A to 0x48.
     pub bytes: [u8; 15],
+    /// ST1 to ST2 of the magnetometer, if it was read through the bypass behind this burst.
+    pub field: Option<[u8; 8]>,
 }
 
 /// The sensor.
@@ -197,6 +199,11 @@ impl Mpu9250 {
     pub fn interrupt_pin(&mut self, now: Ticks) -> bool {
         self.advance(now);
         self.interrupts.pin(&self.registers, now)
+    }
+
+    /// The magnetometer, if there is one.
+    pub fn magnetometer(&mut self) -> Option<&mut Ak8963> {
+        self.magnetometer.as_mut()
     }
 
     /// The present part.

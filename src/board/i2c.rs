@@ -222,6 +222,14 @@ impl I2c {
         self.get()
     }
 
+    /// The last byte has come in and was refused: takes it without giving the bus away, for another
+    /// address to follow at once.
+    pub(super) fn receive_last_and_hold(&mut self) -> u8 {
+        // Turning back to sending keeps the bus without clocking another byte.
+        self.control(IICEN | MST | TX);
+        self.get()
+    }
+
     /// STOP.
     pub(super) fn stop(&mut self) {
         self.control(IICEN);
@@ -284,6 +292,7 @@ impl I2c {
 
     /// Operations of one kind that follow each other are one transfer; between the two kinds comes a
     /// repeated START (the contract of [`embedded_hal::i2c::I2c::transaction`]).
+    #[inline(never)] // the set-up has forty transfers, and this would be in the image as often
     fn run(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Error> {
         let mut writing = None;
         let mut to_read = 0;
@@ -321,13 +330,11 @@ impl I2c {
                             Err(error) => return Err(error),
                         }
                         to_read -= 1;
-                        if to_read == 0 && !ends_here {
-                            // Turning back to sending keeps the bus without clocking another byte.
-                            self.control(IICEN | MST | TX);
-                            *byte = self.get();
+                        *byte = if to_read == 0 && !ends_here {
+                            self.receive_last_and_hold()
                         } else {
-                            *byte = self.receive_next(to_read, false);
-                        }
+                            self.receive_next(to_read, false)
+                        };
                     }
                 }
             }

@@ -44,6 +44,14 @@ impl Resolution {
         }
     }
 
+    /// The same as a constant of the scalar: the board has no double precision to convert it from.
+    fn scale<T: RealField>(self) -> T {
+        match self {
+            Self::Bits14 => convert(Self::Bits14.microtesla_per_count()),
+            Self::Bits16 => convert(Self::Bits16.microtesla_per_count()),
+        }
+    }
+
     /// The largest count the part reports, of either sign.
     pub const fn largest_count(self) -> i16 {
         match self {
@@ -98,7 +106,7 @@ impl RawField {
         if self.counts.iter().any(|c| c.unsigned_abs() > largest) {
             return Err(FieldError::OutOfRange);
         }
-        let microtesla_per_count: T = convert(self.resolution.microtesla_per_count());
+        let microtesla_per_count = self.resolution.scale::<T>();
         let counts = Vector3::from(self.counts.map(|c| convert(f32::from(c))));
         let own = counts.component_mul(&adjustment.factors()) * microtesla_per_count;
         Ok(MagneticField::from_microtesla(to_body(own)))
@@ -142,8 +150,11 @@ impl SensitivityAdjustment {
     }
 
     /// H_adj = H ((ASA − 128) · 0.5 / 128 + 1): from 0.5 to 1.496. Along the magnetometer's axes.
+    ///
+    /// That is (ASA + 128) / 256, which has no difference to take without a sign, and is exact in
+    /// single precision.
     pub fn factors<T: RealField + Copy>(self) -> Vector3<T> {
-        let factor = |asa: u8| convert((f64::from(asa) - 128.0) * 0.5 / 128.0 + 1.0);
+        let factor = |asa: u8| convert((f32::from(asa) + 128.0) / 256.0);
         Vector3::from(self.0.map(factor))
     }
 }

@@ -48,9 +48,10 @@ impl Bench {
         for i in 0..samples {
             self.samples += 1;
             let (at, lines) = (self.samples, &mut self.lines);
-            self.tracker.update(&raw(i), &self.health, &mut |line| {
-                lines.push((at, line.to_string()));
-            });
+            self.tracker
+                .update(&raw(i), None, &self.health, &mut |line| {
+                    lines.push((at, line.to_string()));
+                });
         }
     }
 

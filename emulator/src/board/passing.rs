@@ -49,7 +49,7 @@ impl Board {
         if !self.cpu.is_asleep() {
             let now_in = self.cpu.exception();
             if now_in != exception {
-                self.change_exception(now_in, false);
+                self.change_exception(now_in, true);
             }
             return;
         }

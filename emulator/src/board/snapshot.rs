@@ -81,6 +81,7 @@ impl Board {
             pc: self.pc,
             measure: self.measure.clone(),
             storm: self.storm,
+            active: self.active.clone(),
             polling: self.polling.clone(),
             watch: Watch::default(),
             stack_limit: self.stack_limit,

@@ -46,6 +46,8 @@ impl Watch {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Watched {
     exception: u16,
+    /// How many handlers have begun and not ended.
+    active: usize,
     stack: u32,
     asleep: bool,
     entries: u64,
@@ -97,6 +99,7 @@ impl Board {
     pub(super) fn watched(&self) -> Watched {
         Watched {
             exception: self.cpu.exception(),
+            active: self.active.len(),
             stack: self.cpu.stack_pointer(),
             asleep: self.cpu.is_asleep(),
             entries: self.measure.latencies.iter().map(|one| one.count).sum(),
@@ -117,8 +120,8 @@ impl Board {
         if from != 0 && (chained || moved && !pushed) {
             self.tell_watchers(Some(Happening::Left { exception: from }));
         }
-        // A return from one handler to the one it had interrupted pops a frame; chaining leaves the stack alone.
-        let returned = moved && after.stack > before.stack && from != 0;
+        // From one handler back to the one it had interrupted.
+        let returned = moved && after.active < before.active;
         if to != 0 && (moved || chained) && !returned {
             let waited = (after.entries != before.entries)
                 .then_some(self.measure.waited)

@@ -4,6 +4,7 @@ mod measurement;
 
 use std::sync::Arc;
 
+use super::Faults;
 use super::complaint::{Complaint, Complaints};
 use super::part::Magnetic;
 use crate::motion::Motion;
@@ -73,6 +74,8 @@ pub struct Ak8963 {
     silenced: bool,
     pointer: u8,
     first_byte: bool,
+    /// Present faults.
+    pub faults: Faults,
 }
 
 impl Ak8963 {
@@ -87,6 +90,7 @@ impl Ak8963 {
             silenced: false,
             pointer: 0,
             first_byte: false,
+            faults: Faults::default(),
         }
     }
 
@@ -102,7 +106,7 @@ impl Ak8963 {
 
     /// Whether it acknowledges its address.
     pub fn answers(&self) -> bool {
-        !self.silenced
+        !self.silenced && !self.faults.absent
     }
 
     /// Its address after a START.
@@ -139,7 +143,7 @@ impl Ak8963 {
     }
 
     fn advance(&mut self, now: Ticks) {
-        if self.measurement.advance(now) {
+        if !self.faults.frozen && self.measurement.advance(now) {
             // Single measurement and self-test end in power-down (sections 6.4.2 and 6.4.5).
             self.mode = Mode::PowerDown;
         }

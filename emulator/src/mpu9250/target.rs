@@ -35,6 +35,8 @@ pub struct Transfer {
     /// Output registers as this transfer sees them.
     shadow: [u8; SHADOWED],
     burst: Option<(Ticks, Vec<u8>)>,
+    /// What is being read of the magnetometer.
+    field: Vec<u8>,
 }
 
 impl Default for Transfer {
@@ -45,6 +47,7 @@ impl Default for Transfer {
             first_byte: false,
             shadow: [0; SHADOWED],
             burst: None,
+            field: Vec::new(),
         }
     }
 }
@@ -187,7 +190,16 @@ impl Mpu9250 {
             && let Some(recording) = &mut self.recording
             && let Ok(bytes) = bytes.try_into()
         {
-            recording.push(Burst { at, bytes });
+            recording.push(Burst {
+                at,
+                bytes,
+                field: None,
+            });
+        }
+        if let Ok(field) = std::mem::take(&mut self.transfer.field).try_into()
+            && let Some(last) = self.recording.as_mut().and_then(|all| all.last_mut())
+        {
+            last.field = Some(field);
         }
     }
 }
@@ -235,7 +247,11 @@ impl Target for Mpu9250 {
             _ if self.faults.absent => 0xFF,
             Partner::Nobody => 0xFF,
             Partner::Magnetometer => match &mut self.magnetometer {
-                Some(magnetometer) => magnetometer.read(now, &mut self.complaints),
+                Some(magnetometer) => {
+                    let byte = magnetometer.read(now, &mut self.complaints);
+                    self.transfer.field.push(byte);
+                    byte
+                }
                 None => 0xFF,
             },
             Partner::Registers => {

@@ -215,3 +215,25 @@ fn resetting_the_master_in_mid_transfer_hangs_its_slave() {
     driver.wait(0.005);
     assert_eq!(driver.read(0x36) & 1, 1, "no answer any more");
 }
+
+/// AK 6.4.3.2: what ends while data is being read is skipped. A master that reads ST1 to ST2 at every sample reads data
+/// for 160 of 1000 µs, HXL to ST2 at 400 kHz; at DRDY alone nothing is skipped.
+#[test]
+fn a_master_that_reads_at_every_sample_makes_the_magnetometer_skip_measurements() {
+    let mut part = Part::perfect();
+    // Through all phases between the two clocks, ten times.
+    part.magnetic.clock_error = 0.001;
+    let mut driver = master_of(part);
+    write_through(&mut driver, 0x0A, 0x16);
+    driver.write(0x25, READ_AK);
+    driver.write(0x26, 0x02);
+    driver.write(0x27, 0x88);
+    driver.wait(0.1);
+    let mut fresh = 0;
+    for _ in 0..10_000 {
+        driver.wait_periods(1, 1_000);
+        fresh += u32::from(driver.read(0x49) & 1);
+    }
+    assert!((810..=860).contains(&fresh), "{fresh} of 1001");
+    assert_eq!(driver.complaints(), []);
+}

@@ -114,7 +114,7 @@ pub enum PartKind {
 }
 
 const FAULT_HELP: &str = "Break something, from S on (else from the start) and until T (else for good): absent (no sensor \
-                          answers), frozen (no new samples), brown-out (the sensor loses its settings), stuck-sda (held \
+                          answers), frozen (no new samples), magnetometer-absent, magnetometer-frozen, brown-out (the sensor loses its settings), stuck-sda (held \
                           until it is clocked free), stuck-scl, no-pull-ups, unread (nobody reads the port), unplugged, noisy-usb (damaged packets and lost handshakes); may be given \
                           more than once";
 
@@ -180,7 +180,7 @@ impl FromStr for Fault {
         }
         Ok(Fault {
             kind: Kind::from_str(kind, true)
-                .map_err(|_| "give one of absent, frozen, brown-out, stuck-sda, stuck-scl, no-pull-ups, unread, unplugged, noisy-usb")?,
+                .map_err(|_| "give one of absent, frozen, magnetometer-absent, magnetometer-frozen, brown-out, stuck-sda, stuck-scl, no-pull-ups, unread, unplugged, noisy-usb")?,
             from: time::ticks(from),
             until: until.map_or(Ticks::MAX, time::ticks),
         })

@@ -11,6 +11,8 @@ use vrduino_emulator::board::Board;
 pub enum Kind {
     Absent,
     Frozen,
+    MagnetometerAbsent,
+    MagnetometerFrozen,
     BrownOut,
     StuckSda,
     StuckScl,
@@ -42,6 +44,14 @@ impl Input {
             Input::Fault(kind, on) => match kind {
                 Kind::Absent => chip.sensor.faults.absent = on,
                 Kind::Frozen => chip.sensor.faults.frozen = on,
+                Kind::MagnetometerAbsent | Kind::MagnetometerFrozen => {
+                    if let Some(magnetometer) = chip.sensor.magnetometer() {
+                        match kind {
+                            Kind::MagnetometerAbsent => magnetometer.faults.absent = on,
+                            _ => magnetometer.faults.frozen = on,
+                        }
+                    }
+                }
                 Kind::BrownOut if on => chip.sensor.brown_out(now),
                 Kind::BrownOut => {}
                 Kind::StuckSda => chip.pins.sda_held_for = if on { 5 } else { 0 },

@@ -93,7 +93,9 @@ impl Measurement {
         let Some((since, hz)) = self.running else {
             return false;
         };
-        let Some(passed) = now.saturating_sub(since).checked_sub(DURATION) else {
+        // By its own clock.
+        let passed = (now.saturating_sub(since) as f64 * (1.0 + self.part.clock_error)) as Ticks;
+        let Some(passed) = passed.checked_sub(DURATION) else {
             return false;
         };
         let ended = hz.map_or(1, |hz| passed * hz / SECOND + 1);
@@ -109,8 +111,8 @@ impl Measurement {
         }
         // A measurement nobody read is overwritten; in single mode that is no overrun (section 8.3.3).
         self.overrun |= hz.is_some() && (self.ready || new > 1);
-        let begin = since + hz.map_or(0, |hz| (ended - 1) * SECOND / hz);
-        self.measure(begin);
+        let begin = hz.map_or(0, |hz| (ended - 1) * SECOND / hz);
+        self.measure(since + (begin as f64 / (1.0 + self.part.clock_error)) as Ticks);
         if hz.is_none() {
             self.running = None;
         }
