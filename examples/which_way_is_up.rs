@@ -1,8 +1,8 @@
 //! Which way is up? The tracker's library on made-up samples, without board or emulator.
 //!
 //! Run with `cargo run --example which_way_is_up`. A board lies still on its right side for a second and
-//! is then set upright in another. Expect the roll to go from -90° to 0°. If it ends elsewhere, an axis
-//! or a sign is wrong.
+//! is then set upright in another. Expect the quaternion to go from `0.707 0 0 -0.707`, a roll of -90°,
+//! to `1 0 0 0`, and up to end on the board's y axis. If it ends elsewhere, an axis or a sign is wrong.
 
 use vrduino::imu::RANGES;
 use vrduino::sensor::RawSample;

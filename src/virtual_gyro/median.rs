@@ -1,5 +1,6 @@
 //! The sliding median (section 3.2.2): of the last n samples, the one with the median norm of
-//! gravity. Samples whose norm is an outlier never come out.
+//! gravity. Samples whose norm is an outlier never come out; in figure 4, though, the low-pass comes
+//! before and makes a swell of each, which no window is long enough for.
 
 use super::fields::{Fields, NoAttitude};
 use core::cmp::Ordering;
