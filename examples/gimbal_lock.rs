@@ -10,8 +10,14 @@
 #[path = "picture/mod.rs"]
 mod picture;
 
+#[path = "program/mod.rs"]
+mod program;
+
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use picture::{Line, Picture};
+use picture::{Line, Picture, Scale, Stroke};
+use std::error::Error;
+use std::fmt::Write as _;
+use std::process::ExitCode;
 use vrduino::calibration::GyroBias;
 use vrduino::orientation::TimeConstant;
 use vrduino::orientation::complementary::Complementary;
@@ -55,7 +61,11 @@ fn errors(motion: &dyn Motion) -> [Vec<[f64; 2]>; 2] {
     errors
 }
 
-fn main() -> std::io::Result<()> {
+fn main() -> ExitCode {
+    program::run(include_str!("gimbal_lock.rs"), 0, run)
+}
+
+fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     let start = || Turns::new(0.5, 0.5);
     let over = start().turn(X, 150.0, 2.5);
     let motions = [
@@ -74,30 +84,40 @@ fn main() -> std::io::Result<()> {
             start().turn([1.0, 0.0, 1.0], 100.0, 1.5),
         ),
     ];
-    println!("{:33} {:>17} {:>17}", "worst error", "Euler", "quaternion");
+    writeln!(
+        text,
+        "{:33} {:>17} {:>17}",
+        "worst error", "Euler", "quaternion"
+    )?;
     for (name, motion) in &motions {
         let [euler, quaternion] = errors(motion).map(|errors| {
             let worst = errors.iter().map(|point| point[1]).reduce(f64::max);
             worst.unwrap_or(f64::NAN)
         });
-        println!("{name:33} {euler:16.4}° {quaternion:16.4}°");
+        writeln!(text, "{name:33} {euler:16.4}° {quaternion:16.4}°")?;
     }
     let [euler, quaternion] = errors(&over);
     let picture = Picture {
-        title: "Pitch past 90°: gimbal lock",
+        title: "Error of both filters while pitch goes past 90°: gimbal lock",
         x: "time (s)",
+        scales: [Scale::Even; 2],
         y: "error (°)",
         lines: vec![
             Line {
-                name: "Euler",
+                name: "Euler filter (2016 lecture)",
+                stroke: Stroke::Plain,
                 points: euler,
             },
             Line {
-                name: "quaternion",
+                name: "quaternion filter (notes)",
+                stroke: Stroke::Plain,
                 points: quaternion,
             },
         ],
     };
-    println!("{}", picture.save("gimbal_lock")?.display());
-    Ok(())
+    Ok(writeln!(
+        text,
+        "{}",
+        picture.save("gimbal_lock")?.display()
+    )?)
 }
