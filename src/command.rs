@@ -1,10 +1,15 @@
-//! Single keys without a newline, as the course's programs send them. A colon begins a line that
-//! a later version may understand; this one passes over it, so that the letters in it press no
-//! keys.
+//! Single keys without a newline, as the course's programs send them, and lines that begin with a
+//! colon, [`request`]s, whose letters press no keys.
 //!
-//! So it does with a line that begins with anything else: a terminal that nobody has told otherwise
-//! echoes what the board streams, and the digits in it would press keys without end. No line of the
-//! stream begins with a key.
+//! A line that begins with anything else is passed over to its end: a terminal that nobody has told
+//! otherwise echoes what the board streams, and the digits in it would press keys without end. No line
+//! of the stream begins with a key or a colon.
+
+mod number;
+pub mod request;
+
+use heapless::String;
+use request::{Refusal, Request};
 
 /// What the lines show. The digits are the course's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,8 +29,8 @@ pub enum Mode {
     Quaternion,
 }
 
-/// What a key asks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What the host asks for.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// `0` to `5`: show this.
     Mode(Mode),
@@ -33,10 +38,14 @@ pub enum Command {
     Reset,
     /// `b`: measure the gyro's bias again.
     MeasureBias,
+    /// A line that began with a colon: what it asks for, or why it was not understood.
+    Line(Result<Request, Refusal>),
 }
 
 /// Bytes after which a line is taken for noise: more than the longest line of the stream.
 const LONGEST_LINE: u8 = 128;
+/// Longest request, without its colon.
+const LONGEST_REQUEST: usize = 64;
 /// Calls of [`Parser::idle`] in a row after which a mistyped key is forgotten. An echo never pauses
 /// as long inside a line.
 const SILENCE: u8 = 20;
@@ -47,16 +56,17 @@ enum Place {
     /// Each is a key.
     #[default]
     Outside,
-    /// A colon's line; so many may still follow.
-    Command(u8),
-    /// A line that is none of ours.
+    /// A colon's line.
+    Request,
+    /// A line that is none of ours, or has been refused; so many bytes may still follow.
     Foreign(u8),
 }
 
 /// Turns bytes from the host into commands, in whatever chunks they come.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Parser {
     place: Place,
+    request: String<LONGEST_REQUEST>,
     silence: u8,
 }
 
@@ -65,6 +75,7 @@ impl Parser {
     pub const fn new() -> Self {
         Self {
             place: Place::Outside,
+            request: String::new(),
             silence: 0,
         }
     }
@@ -81,14 +92,36 @@ impl Parser {
     pub fn push(&mut self, byte: u8) -> Option<Command> {
         self.silence = 0;
         let end_of_line = matches!(byte, b'\n' | b'\r');
-        self.place = match self.place {
+        match self.place {
             Place::Outside => return self.key(byte),
-            Place::Command(0) | Place::Foreign(0) => Place::Outside,
-            _ if end_of_line => Place::Outside,
-            Place::Command(left) => Place::Command(left - 1),
-            Place::Foreign(left) => Place::Foreign(left - 1),
-        };
+            Place::Request if end_of_line => {
+                self.place = Place::Outside;
+                let request = request::parse(&self.request);
+                self.request.clear();
+                return Some(Command::Line(request));
+            }
+            Place::Request => return self.letter(byte),
+            Place::Foreign(0) => self.place = Place::Outside,
+            Place::Foreign(_) if end_of_line => self.place = Place::Outside,
+            Place::Foreign(left) => self.place = Place::Foreign(left - 1),
+        }
         None
+    }
+
+    /// One more of a request. What is no ASCII becomes a question mark, and so no verb.
+    fn letter(&mut self, byte: u8) -> Option<Command> {
+        let letter = if byte.is_ascii() {
+            char::from(byte)
+        } else {
+            '?'
+        };
+        if self.request.push(letter).is_ok() {
+            return None;
+        }
+        self.place = Place::Foreign(LONGEST_LINE);
+        let refusal = Refusal::too_long(&self.request);
+        self.request.clear();
+        Some(Command::Line(Err(refusal)))
     }
 
     fn key(&mut self, byte: u8) -> Option<Command> {
@@ -102,7 +135,7 @@ impl Parser {
             b'r' => Command::Reset,
             b'b' => Command::MeasureBias,
             b':' => {
-                self.place = Place::Command(LONGEST_LINE);
+                self.place = Place::Request;
                 return None;
             }
             b'\n' | b'\r' | b' ' => return None,

@@ -6,7 +6,8 @@
 //! | `parameters` | what a person chooses, as times in seconds |
 //! | `inclination` | gyro and accelerometer to a tilt without drift, heading from the gyro alone |
 //! | `rest` | sees when nothing moves |
-//! | `bias` | what the gyro reads when nothing turns: a mean at rest, an integral on the move |
+//! | `bias` | what the gyro reads when nothing turns: a mean at rest |
+//! | `integral` | and on the move, what the errors of tilt and heading say of it |
 //! | `disturbance` | tells the field of the earth from that of a magnet |
 //! | `heading` | a turn about the vertical that brings north to north |
 //!
@@ -25,6 +26,7 @@ mod bias;
 mod disturbance;
 mod heading;
 mod inclination;
+mod integral;
 mod parameters;
 mod rest;
 
@@ -38,6 +40,7 @@ use crate::sensor::Sample;
 use crate::units::{AngularRate, MagneticField, Seconds, SpecificForce};
 use heading::Heading;
 use inclination::Inclination;
+use integral::Integral;
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
 use rest::Rest;
 
@@ -45,11 +48,12 @@ use rest::Rest;
 /// other forms of it are held against.
 #[derive(Clone, Debug)]
 pub struct Fusion<T: RealField> {
-    sample_period: Seconds<T>,
+    rates: Rates<T>,
     lead: Seconds<T>,
     inclination: Inclination<T>,
     rest: Rest<T>,
     bias: Bias<T>,
+    integral: Integral<T>,
     heading: Heading<T>,
     /// The rate of the last sample, without bias: the lead goes on with it.
     rate: AngularRate<T>,
@@ -61,16 +65,27 @@ impl<T: RealField + Copy> Fusion<T> {
     /// Starts with the first sample: level by its force, heading ahead.
     pub fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {
         Self {
-            sample_period: rates.sample,
+            rates,
             lead: parameters.lead,
             inclination: Inclination::new(parameters, rates.sample),
             rest: Rest::new(parameters, rates.sample),
             bias: Bias::new(parameters, rates),
+            integral: Integral::new(parameters, rates),
             heading: Heading::new(parameters, rates.field),
             rate: AngularRate::zero(),
             started: false,
             refused: 0,
         }
+    }
+
+    /// Goes on with other parameters from where it is.
+    pub fn tune(&mut self, parameters: &Parameters<T>) {
+        self.lead = parameters.lead;
+        self.inclination.tune(parameters, self.rates.sample);
+        self.rest.tune(parameters, self.rates.sample);
+        self.bias.tune(parameters, self.rates);
+        self.integral.tune(parameters, self.rates);
+        self.heading.tune(parameters, self.rates.field);
     }
 
     /// One sample with the gyro's bias still in it, body frame; every so often with a field,
@@ -79,15 +94,11 @@ impl<T: RealField + Copy> Fusion<T> {
     /// A sample that is not finite, or beyond what any sensor of this kind reports (200 rad/s,
     /// 1000 m/s²), is no measurement: the orientation stays as it is and [`Self::refused`] counts. A
     /// field that is none (zero, not finite, beyond 100 mT) leaves the heading to the gyro.
-    pub fn update(
-        &mut self,
-        sample: &Sample<T>,
-        field: Option<MagneticField<T>>,
-    ) -> UnitQuaternion<T> {
+    pub fn update(&mut self, sample: &Sample<T>, field: Option<MagneticField<T>>) {
         let (rate, force) = (sample.rate.rad_per_s(), sample.force.m_per_s2());
         if !within(rate, 200.0) || !within(force, 1000.0) {
             self.refused = self.refused.saturating_add(1);
-            return self.orientation();
+            return;
         }
         if !self.started {
             self.inclination.level(sample.force);
@@ -100,7 +111,7 @@ impl<T: RealField + Copy> Fusion<T> {
             self.bias.moves();
         }
         self.rate = AngularRate::from_rad_per_s(rate - self.bias.rad_per_s());
-        let tilt_error = self.inclination.update(self.rate, sample.force);
+        self.inclination.update(self.rate, sample.force);
         let heading_error = field
             .map(MagneticField::microtesla)
             .filter(|&field| within(field, 100_000.0))
@@ -109,11 +120,12 @@ impl<T: RealField + Copy> Fusion<T> {
                 self.heading
                     .update(self.inclination.in_world(field), turning)
             });
-        if !matches!(motion, Motion::Still { .. }) {
-            let error = self.bias.integrals(tilt_error, heading_error);
-            self.bias.shift(self.inclination.in_body(error));
+        let error = self
+            .integral
+            .update(&self.inclination, heading_error, self.bias.source());
+        if let (Motion::Moving { .. }, Some(error)) = (motion, error) {
+            self.bias.shift(error);
         }
-        self.orientation()
     }
 
     /// Body to world, led by [`Parameters::lead`]; the identity before the first sample.
@@ -134,6 +146,13 @@ impl<T: RealField + Copy> Fusion<T> {
     pub fn reset(&mut self, force: SpecificForce<T>) {
         self.inclination.restart(force);
         self.heading.restart();
+        self.started = true;
+    }
+
+    /// Goes on from this orientation, body to world, with bias and compass as they are.
+    pub fn set(&mut self, orientation: UnitQuaternion<T>) {
+        self.inclination
+            .set(self.heading.turn().inverse() * orientation);
         self.started = true;
     }
 
@@ -173,11 +192,6 @@ impl<T: RealField + Copy> Fusion<T> {
     /// Samples that were no measurements.
     pub fn refused(&self) -> u32 {
         self.refused
-    }
-
-    /// The time between two samples.
-    pub fn sample_period(&self) -> Seconds<T> {
-        self.sample_period
     }
 }
 

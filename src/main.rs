@@ -43,7 +43,7 @@ fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> 
     loop {
         let sample = board.next_sample()?;
         while let Some(command) = board.usb.command() {
-            tracker.command(command);
+            tracker.command(command, &mut |line| board.usb.send(line));
         }
         breadcrumb::mark(Stage::Filter);
         let health = board.health();

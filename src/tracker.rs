@@ -9,15 +9,18 @@
 //! [`Tracker::update`]: crate::tracker::Tracker::update
 //! [`SAMPLE_PERIOD`]: crate::tracker::SAMPLE_PERIOD
 
+mod answers;
+mod estimators;
+
 use crate::calibration::{GyroBias, Reading, Rest, Stillness, Verdict};
 use crate::command::{Command, Mode};
-use crate::orientation::complementary::Complementary;
 use crate::orientation::flatland::Flatland;
 use crate::orientation::gyro::DeadReckoning;
 use crate::orientation::{DEFAULT_TIME_CONSTANT, angles};
 use crate::sensor::{Ranges, RawSample, Sample};
 use crate::units::{Seconds, SpecificForce};
-use crate::wire::{self, Line, Tag};
+use crate::wire::{self, Decimals, Line, Tag};
+use estimators::Estimators;
 use nalgebra::UnitQuaternion;
 
 /// The sensor's own rate with its filter in use, 1 kHz.
@@ -29,6 +32,9 @@ pub const LINE_EVERY: u32 = 10;
 
 /// Samples per INFO block: one second.
 const INFO_EVERY: u32 = 1000;
+
+/// Samples between reminders that the bias is not known: a minute.
+const REMIND_EVERY: u32 = 60_000;
 
 /// Samples to wait for a still window: 5 s. Someone who is already wearing the board should see a
 /// picture, even a drifting one.
@@ -48,11 +54,13 @@ pub struct Health {
 pub struct Tracker {
     ranges: Ranges,
     mode: Mode,
-    bias: GyroBias<f32>,
+    decimals: Decimals,
     /// The window the bias came from; none if it was never still.
     rest: Option<Rest>,
     measurement: Option<Measurement>,
-    fused: Complementary<f32>,
+    /// Whether the orientation runs without a bias measured at rest.
+    bias_unknown: bool,
+    estimators: Estimators,
     gyro: DeadReckoning<f32>,
     flat: Flatland<f32>,
     phase: Phase,
@@ -92,10 +100,11 @@ impl Tracker {
         Self {
             ranges,
             mode: Mode::default(),
-            bias: GyroBias::zero(),
+            decimals: Decimals::COURSE,
             rest: None,
             measurement: Some(Measurement::new(ranges)),
-            fused: Complementary::new(DEFAULT_TIME_CONSTANT, SAMPLE_PERIOD),
+            bias_unknown: false,
+            estimators: Estimators::default(),
             gyro: DeadReckoning::new(SAMPLE_PERIOD),
             flat: Flatland::new(DEFAULT_TIME_CONSTANT, SAMPLE_PERIOD),
             phase: Phase::Starting,
@@ -104,9 +113,10 @@ impl Tracker {
         }
     }
 
-    /// Takes a key. What it asks for happens with the next sample.
-    pub fn command(&mut self, command: Command) {
+    /// Takes a key, which has its effect with the next sample, or a line, which is answered at once.
+    pub fn command(&mut self, command: Command, emit: &mut impl FnMut(&Line)) {
         match command {
+            Command::Line(line) => emit(&self.answer(line)),
             Command::Mode(mode) => {
                 self.mode = mode;
                 // The views that are not shown do not run, so they begin where the tracker is now.
@@ -135,7 +145,7 @@ impl Tracker {
 
     /// The fused orientation, body to world; the identity until there is one.
     pub fn orientation(&self) -> UnitQuaternion<f32> {
-        self.fused.orientation()
+        self.estimators.orientation()
     }
 
     /// One sample. `emit` is given the lines it leads to: mostly none, every tenth time one to
@@ -143,9 +153,9 @@ impl Tracker {
     pub fn update(&mut self, raw: &RawSample, health: &Health, emit: &mut impl FnMut(&Line)) {
         self.count(raw);
         let sample: Sample<f32> = self.ranges.sample(raw);
-        let reading = self.bias.correct(sample);
-        self.track(&reading);
+        let reading = self.track(sample);
         self.measure(raw, sample.force, emit);
+        self.tell_of_bias(emit);
         if self.phase != Phase::Starting {
             self.show(&reading, health, emit);
         }
@@ -168,47 +178,49 @@ impl Tracker {
         self.ticks.is_multiple_of(samples)
     }
 
-    /// The default mode runs the fused filter and nothing else.
+    /// The default mode runs the chosen estimator and nothing else. Returns the sample without the
+    /// bias that it takes off.
     #[inline(never)] // a function of its own in the image, which the emulator times
-    fn track(&mut self, reading: &Reading<f32>) {
+    fn track(&mut self, sample: Sample<f32>) -> Reading<f32> {
         match self.phase {
-            Phase::Starting => return,
-            Phase::Running => {
-                self.fused.update(reading);
-            }
-            Phase::Resetting => self.start(reading.force()),
+            Phase::Starting => return GyroBias::zero().correct(sample),
+            Phase::Running => self.estimators.update(&sample, None),
+            Phase::Resetting => self.start(sample.force),
             Phase::Releveling => {
-                self.fused.level(reading.force());
-                self.flat.reset(reading.force());
+                self.estimators.level(sample.force);
+                self.flat.reset(sample.force);
                 self.phase = Phase::Running;
             }
         }
+        let reading = self.estimators.bias().correct(sample);
         match self.mode {
             Mode::Flat => {
-                self.flat.update(reading);
+                self.flat.update(&reading);
             }
             Mode::ThreeD => {
-                self.gyro.update(reading);
+                self.gyro.update(&reading);
             }
             Mode::Info | Mode::Gyro | Mode::Accel | Mode::Quaternion => {}
         }
+        reading
     }
 
     /// Yaw 0, and the tilt that this force (body frame) shows.
     ///
     /// For `r` the course's firmware goes to the identity and leaves the rest to its filter, which
-    /// is level again within a few samples. With a time constant of 7.6 s the picture would lean
+    /// is level again within a few samples. With a time constant of seconds the picture would lean
     /// for half a minute.
     fn start(&mut self, force: SpecificForce<f32>) {
-        self.fused.reset(force);
+        self.estimators.reset(force);
         self.flat.reset(force);
-        self.gyro.set(self.fused.orientation());
+        self.gyro.set(self.estimators.orientation());
         self.phase = Phase::Running;
     }
 
     fn restart_views(&mut self) {
-        self.gyro.set(self.fused.orientation());
-        let up = self.fused.orientation().inverse() * nalgebra::Vector3::y();
+        let orientation = self.estimators.orientation();
+        self.gyro.set(orientation);
+        let up = orientation.inverse() * nalgebra::Vector3::y();
         self.flat.reset(SpecificForce::from_g(up));
     }
 
@@ -229,7 +241,8 @@ impl Tracker {
         match measurement.stillness.push(raw) {
             Verdict::Still(rest) => {
                 self.measurement = None;
-                self.bias = GyroBias::new(rest.gyro_bias);
+                self.estimators.set_bias(rest.gyro_bias);
+                self.bias_unknown = false;
                 self.rest = Some(rest);
                 if starting {
                     self.start(rest.force);
@@ -242,13 +255,28 @@ impl Tracker {
                     if starting {
                         self.start(force);
                         emit(&wire::text(
-                            "warning: not still for 5 s, gyro bias taken as 0; hold still and press b",
+                            "warning: not still for 5 s, gyro bias unknown: lay the board down for two seconds",
                         ));
                     } else {
                         emit(&wire::text("warning: moved for 5 s, gyro bias kept"));
                     }
                 }
             }
+        }
+    }
+
+    /// A board that was never still streams all the same, and says now and then that it drifts; its
+    /// first rest is told of.
+    fn tell_of_bias(&mut self, emit: &mut impl FnMut(&Line)) {
+        let unknown = self.phase != Phase::Starting && !self.estimators.bias_is_measured();
+        if self.bias_unknown && !unknown {
+            emit(&wire::bias_measured(self.estimators.bias().rate()));
+        }
+        self.bias_unknown = unknown;
+        if unknown && self.every(REMIND_EVERY) {
+            emit(&wire::text(
+                "warning: never still yet, the heading drifts: lay the board down for two seconds",
+            ));
         }
     }
 
@@ -262,12 +290,16 @@ impl Tracker {
         if !self.every(LINE_EVERY) {
             return;
         }
-        let fused = || wire::quaternion(Tag::Fused, &self.fused.orientation());
+        let fused = || wire::quaternion(Tag::Fused, &self.estimators.orientation(), self.decimals);
         match self.mode {
             Mode::Info => {}
             Mode::Flat => emit(&wire::flat(&self.flat.roll())),
             Mode::ThreeD => {
-                emit(&wire::quaternion(Tag::Gyro, &self.gyro.orientation()));
+                emit(&wire::quaternion(
+                    Tag::Gyro,
+                    &self.gyro.orientation(),
+                    self.decimals,
+                ));
                 emit(&wire::angles(&angles::pitch_and_roll(reading.force())));
                 emit(&fused());
             }
@@ -279,7 +311,7 @@ impl Tracker {
 
     fn show_info(&self, health: &Health, emit: &mut impl FnMut(&Line)) {
         emit(&wire::reads_per_second(self.counts.fresh_last_second));
-        emit(&wire::gyro_bias(self.bias.rate()));
+        emit(&wire::gyro_bias(self.estimators.bias().rate()));
         // Nothing is known of the rest if the board never rested.
         if let Some(rest) = &self.rest {
             emit(&wire::gyro_variance(rest));

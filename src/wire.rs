@@ -32,57 +32,76 @@ pub enum Tag {
     Gyro,
 }
 
-/// `QC w x y z` or `QG w x y z`: body to world, scalar first, 3 decimals.
+/// How many decimals the numbers of a quaternion are written with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Decimals(u32);
+
+impl Decimals {
+    /// The course's.
+    pub const COURSE: Self = Self(3);
+
+    /// From 3, which the course's pages expect, to 6, which is what single precision has.
+    pub fn new(decimals: u32) -> Option<Self> {
+        (3..=6).contains(&decimals).then_some(Self(decimals))
+    }
+
+    /// As a number.
+    pub fn get(self) -> u32 {
+        self.0
+    }
+}
+
+/// `QC w x y z` or `QG w x y z`: body to world, scalar first.
 ///
 /// The four numbers as printed have a norm within 0.001 of 1.
-pub fn quaternion(tag: Tag, q: &UnitQuaternion<f32>) -> Line {
+pub fn quaternion(tag: Tag, q: &UnitQuaternion<f32>, decimals: Decimals) -> Line {
     let tag = match tag {
         Tag::Fused => "QC",
         Tag::Gyro => "QG",
     };
-    numbers::<3>(tag, &[q.w, q.i, q.j, q.k])
+    numbers(tag, &[q.w, q.i, q.j, q.k], decimals.0)
 }
 
 /// `EA pitch yaw roll` in degrees, 3 decimals. Yaw is 0: these are the accelerometer's angles.
 pub fn angles(tilt: &PitchRoll<f32>) -> Line {
-    numbers::<3>("EA", &[tilt.pitch.degrees(), 0.0, tilt.roll.degrees()])
+    numbers("EA", &[tilt.pitch.degrees(), 0.0, tilt.roll.degrees()], 3)
 }
 
 /// `FLAT gyro accelerometer fused`: roll in degrees, 3 decimals.
 pub fn flat(roll: &Roll<f32>) -> Line {
     let degrees = [roll.gyro, roll.accelerometer, roll.fused].map(Angle::degrees);
-    numbers::<3>("FLAT", &degrees)
+    numbers("FLAT", &degrees, 3)
 }
 
 /// `GYR: x y z` in °/s, 3 decimals, body frame.
 pub fn gyro(rate: AngularRate<f32>) -> Line {
-    vector::<3>("GYR:", rate.dps())
+    vector("GYR:", rate.dps(), 3)
 }
 
 /// `ACC: x y z` in m/s², 3 decimals, body frame.
 pub fn force(force: SpecificForce<f32>) -> Line {
-    vector::<3>("ACC:", force.m_per_s2())
+    vector("ACC:", force.m_per_s2(), 3)
 }
 
 /// `GYR_BIAS: x y z` in °/s, 5 decimals: what is subtracted from every reading of the gyro.
 pub fn gyro_bias(bias: AngularRate<f32>) -> Line {
-    vector::<5>("GYR_BIAS:", bias.dps())
+    vector("GYR_BIAS:", bias.dps(), 5)
 }
 
 /// `GYR_VAR: x y z` in (°/s)², 5 decimals, over the window the bias is from.
 pub fn gyro_variance(rest: &Rest) -> Line {
-    vector::<5>("GYR_VAR:", rest.gyro_variance_dps2)
+    vector("GYR_VAR:", rest.gyro_variance_dps2, 5)
 }
 
 /// `ACC_BIAS: x y z` in m/s², 5 decimals. The course's name for the mean over that window; most of
 /// it is gravity, and it is not subtracted from anything.
 pub fn force_mean(rest: &Rest) -> Line {
-    vector::<5>("ACC_BIAS:", rest.force.m_per_s2())
+    vector("ACC_BIAS:", rest.force.m_per_s2(), 5)
 }
 
 /// `ACC_VAR: x y z` in (m/s²)², 5 decimals, over the same window.
 pub fn force_variance(rest: &Rest) -> Line {
-    vector::<5>("ACC_VAR:", rest.force_variance_m2_per_s4)
+    vector("ACC_VAR:", rest.force_variance_m2_per_s4, 5)
 }
 
 /// `nReads/sec: n`: new samples the sensor delivered in the last second.
@@ -111,10 +130,34 @@ pub fn bias_measured(bias: AngularRate<f32>) -> Line {
     push(&mut line, "Bias:");
     for value in bias.dps().iter() {
         push(&mut line, " ");
-        push_decimal::<3>(&mut line, *value);
+        push_decimal(&mut line, *value, 3);
     }
     push(&mut line, " deg/s (still)");
     end(line)
+}
+
+/// `OK NAME value unit`, 4 decimals: a setting.
+pub fn answer(name: &str, value: f32, unit: &str) -> Line {
+    let mut line = Line::new();
+    push(&mut line, "OK ");
+    push(&mut line, name);
+    push(&mut line, " ");
+    push_decimal(&mut line, value, 4);
+    if !unit.is_empty() {
+        push(&mut line, " ");
+        push(&mut line, unit);
+    }
+    end(line)
+}
+
+/// `OK bias x y z deg/s, verdict`, 3 decimals.
+pub fn bias(bias: AngularRate<f32>, verdict: fmt::Arguments<'_>) -> Line {
+    let mut numbers = Line::new();
+    for value in bias.dps().iter() {
+        push(&mut numbers, " ");
+        push_decimal(&mut numbers, *value, 3);
+    }
+    text(format_args!("OK bias{numbers} deg/s, {verdict}"))
 }
 
 /// A message for people. What does not fit into a line is cut off; a newline within becomes a
@@ -148,16 +191,16 @@ fn count(name: &str, n: u32) -> Line {
     end(line)
 }
 
-fn vector<const DECIMALS: u32>(tag: &str, v: Vector3<f32>) -> Line {
-    numbers::<DECIMALS>(tag, &[v.x, v.y, v.z])
+fn vector(tag: &str, v: Vector3<f32>, decimals: u32) -> Line {
+    numbers(tag, &[v.x, v.y, v.z], decimals)
 }
 
-fn numbers<const DECIMALS: u32>(tag: &str, values: &[f32]) -> Line {
+fn numbers(tag: &str, values: &[f32], decimals: u32) -> Line {
     let mut line = Line::new();
     push(&mut line, tag);
     for &value in values {
         push(&mut line, " ");
-        push_decimal::<DECIMALS>(&mut line, value);
+        push_decimal(&mut line, value, decimals);
     }
     end(line)
 }
@@ -172,15 +215,15 @@ fn push(line: &mut Line, s: &str) {
     let _ = line.push_str(s);
 }
 
-fn push_decimal<const DECIMALS: u32>(line: &mut Line, value: f32) {
-    let one = 10_u64.pow(DECIMALS);
+fn push_decimal(line: &mut Line, value: f32, decimals: u32) {
+    let one = 10_u64.pow(decimals);
     let steps = magnitude_in_steps(value, one);
     if value < 0.0 && steps > 0 {
         push(line, "-");
     }
     push_digits(line, steps / one, 1);
     push(line, ".");
-    push_digits(line, steps % one, DECIMALS as usize);
+    push_digits(line, steps % one, decimals as usize);
 }
 
 /// |value| in steps of 1/`per_one`, to the nearest, halves up.

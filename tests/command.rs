@@ -1,6 +1,12 @@
 //! Keys and lines from the host, byte by byte.
 
+#[path = "random/mod.rs"]
+mod random;
+
+use random::Random;
+use vrduino::command::request::{Choice, Request, Setting};
 use vrduino::command::{Command, Mode, Parser};
+use vrduino::wire::{Decimals, LINE_LEN};
 
 #[test]
 fn keys_are_single_bytes_and_others_mean_nothing() {
@@ -17,24 +23,176 @@ fn keys_are_single_bytes_and_others_mean_nothing() {
     for byte in 0..=u8::MAX {
         let meant = expected.iter().find(|(key, _)| *key == byte);
         let command = Parser::new().push(byte);
-        assert_eq!(command, meant.map(|(_, command)| *command), "{byte}");
+        assert_eq!(command, meant.map(|(_, command)| command.clone()), "{byte}");
+    }
+}
+
+fn commands(bytes: &[u8]) -> Vec<Command> {
+    let mut parser = Parser::new();
+    bytes.iter().filter_map(|&b| parser.push(b)).collect()
+}
+
+/// What one line asks for; in words where it is refused.
+fn line(text: &str) -> Result<Request, String> {
+    match commands(format!(":{text}\n").as_bytes()).as_slice() {
+        [Command::Line(line)] => line.clone().map_err(|refusal| refusal.to_string()),
+        other => panic!("{text:?} is {other:?}"),
     }
 }
 
 #[test]
 fn the_words_of_a_line_press_no_keys() {
-    let commands = |bytes: &[u8]| {
-        let mut parser = Parser::new();
-        let meant: Vec<_> = bytes.iter().filter_map(|&b| parser.push(b)).collect();
-        meant
-    };
-    assert_eq!(commands(b":rate 100\nr"), [Command::Reset]);
-    assert_eq!(commands(b":rate 100\r\nb"), [Command::MeasureBias]);
-    assert_eq!(commands(b":rate 100\rb"), [Command::MeasureBias]);
-    assert_eq!(commands(b":a:b\n"), []);
+    for end in ["\n", "\r", "\r\n"] {
+        let typed = commands(format!(":compass off{end}b").as_bytes());
+        let off = Command::Line(Ok(Request::Compass(Some(false))));
+        assert_eq!(typed, [off, Command::MeasureBias]);
+    }
+    assert_eq!(commands(b":a:b").len(), 0, "it has not ended");
+    assert_eq!(
+        line("a:b"),
+        Err("a:b: no such verb, :help lists them".into())
+    );
     // A colon that no newline follows does not silence the keys for ever.
-    let noise = [b":".as_slice(), &[b'r'; 129], b"r"].concat();
-    assert_eq!(commands(&noise), [Command::Reset]);
+    let noise = [b":".as_slice(), &[b'r'; 194], b"r"].concat();
+    let typed = commands(&noise);
+    assert_eq!(typed.len(), 2, "{typed:?}");
+    assert_eq!(typed[1], Command::Reset);
+}
+
+#[test]
+fn every_verb_is_understood() {
+    for (text, request) in [
+        ("help", Request::Help),
+        ("version", Request::Version),
+        ("defaults", Request::Defaults),
+        ("bias", Request::Bias),
+        ("estimator", Request::Estimator(None)),
+        ("estimator notes", Request::Estimator(Some(Choice::Notes))),
+        (
+            "estimator default",
+            Request::Estimator(Some(Choice::Default)),
+        ),
+        ("decimals", Request::Decimals(None)),
+        ("decimals 5", Request::Decimals(Decimals::new(5))),
+        ("compass", Request::Compass(None)),
+        ("compass on", Request::Compass(Some(true))),
+        ("get notes-alpha", Request::Get(Setting::NotesAlpha)),
+        (
+            "set notes-alpha 0.98",
+            Request::Set(Setting::NotesAlpha, 0.98),
+        ),
+        ("  set   lead  2.5  ", Request::Set(Setting::Lead, 2.5)),
+        ("set tilt-time +3", Request::Set(Setting::TiltTime, 3.0)),
+        ("set damping .25", Request::Set(Setting::Damping, 0.25)),
+    ] {
+        assert_eq!(line(text), Ok(request), "{text}");
+    }
+    for setting in Setting::ALL {
+        assert_eq!(
+            line(&format!("get {}", setting.name())),
+            Ok(Request::Get(setting))
+        );
+        for end in setting.range() {
+            let text = format!("set {} {end}", setting.name());
+            assert_eq!(line(&text), Ok(Request::Set(setting, end)), "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_refusal_names_the_word_and_fits_a_line() {
+    for (text, refusal) in [
+        ("", ": no such verb, :help lists them"),
+        ("HELP", "HELP: no such verb, :help lists them"),
+        ("estimator kalman", "kalman: default or notes is wanted"),
+        ("compass maybe", "maybe: on or off is wanted"),
+        ("get tau", "tau: no such setting, :set lists them"),
+        ("set lead", "lead: a number like 0.98 is wanted"),
+        ("set lead fast", "fast: a number like 0.98 is wanted"),
+        ("set lead 1e3", "1e3: a number like 0.98 is wanted"),
+        ("set lead nan", "nan: a number like 0.98 is wanted"),
+        ("set lead -1", "-1: lead is 0 to 100 ms"),
+        ("set damping 0", "0: damping is 0.1 to 5 "),
+        ("set notes-alpha 1.001", "1.001: notes-alpha is 0 to 1 "),
+        ("set tilt-time 0.05", "0.05: tilt-time is 0.1 to 100 s"),
+        ("set field-tolerance 0", "0: field-tolerance is 0.01 to 1 "),
+        ("decimals 2", "2: 3 to 6 is wanted"),
+        ("decimals many", "many: 3 to 6 is wanted"),
+        ("bias now", "now: one word too many"),
+        ("help me", "me: one word too many"),
+        ("caf\u{e9}", "caf??: no such verb, :help lists them"),
+    ] {
+        assert_eq!(line(text), Err(refusal.into()), "{text}");
+    }
+    let settings = line("set").unwrap_err();
+    for setting in Setting::ALL {
+        assert!(settings.contains(setting.name()), "{settings}");
+    }
+    let longest = "w".repeat(64);
+    for text in [
+        "set",
+        "get",
+        "set lead",
+        &longest,
+        &format!("set lead {longest}")[..64],
+    ] {
+        let refusal = line(text).unwrap_err();
+        assert!("ERR ".len() + refusal.len() < LINE_LEN, "{refusal}");
+    }
+    let typed = commands(format!(":set {}\n5", "x".repeat(200)).as_bytes());
+    let Command::Line(Err(refusal)) = &typed[0] else {
+        panic!("{typed:?}");
+    };
+    assert_eq!(refusal.to_string(), "set: the line is too long");
+    assert_eq!(typed.len(), 2, "{typed:?}");
+}
+
+#[test]
+fn numbers_are_those_of_the_standard_library() {
+    let mut random = Random(1);
+    for round in 0..100_000 {
+        let decimals = round % 5;
+        let text = format!("{:.decimals$}", random.between(0.0, 1000.0));
+        let Ok(Request::Set(_, value)) = line(&format!("set heading-time {text}")) else {
+            // Below the setting's range.
+            assert!(text.parse::<f32>().unwrap() < 0.1, "{text}");
+            continue;
+        };
+        let exact: f32 = text.parse().unwrap();
+        assert!(
+            (value - exact).abs() <= exact * f32::EPSILON,
+            "{text}: {value}"
+        );
+    }
+    for text in [
+        "",
+        ".",
+        "-",
+        "+-1",
+        "1.2.3",
+        "1,5",
+        "0x10",
+        "1234567890",
+        "١",
+    ] {
+        assert!(line(&format!("set lead {text}")).is_err(), "{text}");
+    }
+}
+
+#[test]
+fn whatever_is_typed_is_a_command_or_nothing() {
+    let mut random = Random(2);
+    let mut parser = Parser::new();
+    let alphabet = b":setlad .0129-\n\r\xFF\0br";
+    let mut answers = 0;
+    for _ in 0..2_000_000 {
+        let index = (random.unit() * alphabet.len() as f64) as usize;
+        if let Some(Command::Line(Err(refusal))) = parser.push(alphabet[index]) {
+            assert!(refusal.to_string().len() < LINE_LEN - 4);
+            answers += 1;
+        }
+    }
+    assert!(answers > 10_000, "{answers}");
 }
 
 #[test]

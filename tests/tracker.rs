@@ -1,86 +1,15 @@
 //! What a host sees, sample by sample: the same code the board runs.
 
+#[path = "tracker/bench.rs"]
+mod bench;
+
+use bench::{Bench, LEVEL, handled};
 use nalgebra::{UnitQuaternion, Vector3};
-use vrduino::command::Parser;
-use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample};
-use vrduino::tracker::{Health, STILL_DEADLINE, Tracker};
+use vrduino::sensor::RawSample;
+use vrduino::tracker::{Health, STILL_DEADLINE};
 
-const RANGES: Ranges = Ranges {
-    gyro: GyroRange::Dps2000,
-    accel: AccelRange::G16,
-};
-const WARNING: &str = "warning: not still for 5 s, gyro bias taken as 0; hold still and press b\n";
-
-/// 1 g on y. The gyro reads 8 counts, 0.488 °/s, about y when nothing turns.
-const LEVEL: RawSample = RawSample {
-    gyro: [0, 8, 0],
-    accel: [0, 2048, 0],
-    temperature: 0,
-    fresh: true,
-};
-
-struct Bench {
-    tracker: Tracker,
-    health: Health,
-    /// Every line with the number of the sample that led to it, from 1.
-    lines: Vec<(u32, String)>,
-    samples: u32,
-}
-
-impl Bench {
-    fn new() -> Self {
-        Self {
-            tracker: Tracker::new(RANGES),
-            health: Health::default(),
-            lines: Vec::new(),
-            samples: 0,
-        }
-    }
-
-    /// One that has measured its bias on a level board.
-    fn started() -> Self {
-        let mut bench = Self::new();
-        bench.feed(1000, |_| LEVEL);
-        bench.lines.clear();
-        bench
-    }
-
-    fn feed(&mut self, samples: u32, raw: impl Fn(u32) -> RawSample) {
-        for i in 0..samples {
-            self.samples += 1;
-            let (at, lines) = (self.samples, &mut self.lines);
-            self.tracker.update(&raw(i), &self.health, &mut |line| {
-                lines.push((at, line.to_string()));
-            });
-        }
-    }
-
-    fn press(&mut self, key: u8) {
-        let command = Parser::new().push(key).expect("a key with a meaning");
-        self.tracker.command(command);
-    }
-
-    fn texts(&self) -> Vec<&str> {
-        self.lines.iter().map(|(_, line)| line.as_str()).collect()
-    }
-
-    fn tagged(&self, tag: &str) -> Vec<&str> {
-        let mut texts = self.texts();
-        texts.retain(|line| line.starts_with(tag));
-        texts
-    }
-}
-
-/// Turned in the hand: 60 °/s back and forth about x.
-fn handled(i: u32) -> RawSample {
-    let swing = (f64::from(i) * 0.01).sin();
-    RawSample {
-        gyro: [(swing * 983.0) as i16, 0, 0],
-        accel: [(swing * 300.0) as i16, 2048, 0],
-        temperature: 0,
-        fresh: true,
-    }
-}
+const WARNING: &str =
+    "warning: not still for 5 s, gyro bias unknown: lay the board down for two seconds\n";
 
 fn numbers(line: &str) -> Vec<f64> {
     line.split_whitespace()
@@ -187,7 +116,9 @@ fn b_gives_up_after_five_seconds_of_motion() {
     bench.lines.clear();
     bench.press(b'3');
     bench.feed(10, |_| LEVEL);
-    assert_eq!(bench.texts(), ["GYR: 0.000 0.000 0.000\n"]);
+    // The integral has followed these hundredths of a degree; a measurement would not be zero either.
+    let left = numbers(bench.texts()[0]);
+    assert!(left.iter().all(|rate| rate.abs() < 0.03), "{left:?}");
 }
 
 #[test]
@@ -353,7 +284,7 @@ fn without_a_still_window_there_is_no_variance_to_tell() {
     bench.feed(1000, handled);
     let texts = bench.texts();
     assert_eq!(texts[0], "nReads/sec: 1000\n");
-    assert_eq!(texts[1], "GYR_BIAS: 0.00000 0.00000 0.00000\n");
+    assert!(texts[1].starts_with("GYR_BIAS: "), "a guess");
     assert_eq!(texts.len(), 5);
 }
 

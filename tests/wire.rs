@@ -5,7 +5,7 @@ use vrduino::calibration::Rest;
 use vrduino::orientation::angles::pitch_and_roll;
 use vrduino::orientation::flatland::Roll;
 use vrduino::units::{Angle, AngularRate, SpecificForce};
-use vrduino::wire::{self, LINE_LEN, Line, Tag};
+use vrduino::wire::{self, Decimals, LINE_LEN, Line, Tag};
 
 /// A value as ACC prints it: the line holds the number as given.
 fn three_decimals(value: f32) -> String {
@@ -33,16 +33,16 @@ fn check(line: &Line, expected: &str) {
 fn quaternions_are_scalar_first() {
     let q = UnitQuaternion::new_unchecked(Quaternion::new(0.5, -0.5, 0.1, 0.7));
     check(
-        &wire::quaternion(Tag::Fused, &q),
+        &wire::quaternion(Tag::Fused, &q, Decimals::COURSE),
         "QC 0.500 -0.500 0.100 0.700\n",
     );
     check(
-        &wire::quaternion(Tag::Gyro, &q),
+        &wire::quaternion(Tag::Gyro, &q, Decimals::COURSE),
         "QG 0.500 -0.500 0.100 0.700\n",
     );
     let level = UnitQuaternion::identity();
     check(
-        &wire::quaternion(Tag::Fused, &level),
+        &wire::quaternion(Tag::Fused, &level, Decimals::COURSE),
         "QC 1.000 0.000 0.000 0.000\n",
     );
 }
@@ -175,7 +175,7 @@ fn a_printed_quaternion_is_a_rotation_to_two_parts_in_a_thousand() {
     for _ in 0..20_000 {
         let q = Quaternion::new(random(), random(), random(), random());
         let q = UnitQuaternion::new_normalize(q);
-        let line = wire::quaternion(Tag::Fused, &q);
+        let line = wire::quaternion(Tag::Fused, &q, Decimals::COURSE);
         let numbers: Vec<f64> = line
             .strip_prefix("QC ")
             .and_then(|rest| rest.strip_suffix('\n'))

@@ -139,7 +139,8 @@ fn fused<T: RealField + Copy>(
             force: SpecificForce::from_m_per_s2(narrow(sample.force.m_per_s2())),
         };
         let field = MagneticField::from_microtesla(narrow(field.microtesla()));
-        fusion.update(&sample, (axes == Axes::Nine).then_some(field))
+        fusion.update(&sample, (axes == Axes::Nine).then_some(field));
+        fusion.orientation()
     });
     orientations.map(widened).collect()
 }

@@ -1,8 +1,8 @@
-//! What the gyro reads when nothing turns. At rest that is its mean; on the move, what the errors of
-//! tilt and heading add up to says it slowly.
+//! What the gyro reads when nothing turns. At rest that is its mean; on the move,
+//! [`Integral`](super::integral::Integral) moves it slowly.
 
-use super::parameters::{Parameters, Rates, samples};
-use crate::units::{AngularRate, RADIANS_PER_DEGREE};
+use super::parameters::{Parameters, Rates, samples, share, size};
+use crate::units::{AngularRate, RADIANS_PER_DEGREE, Seconds};
 use nalgebra::{RealField, Vector3, convert};
 
 /// How the bias is known.
@@ -24,60 +24,40 @@ pub struct Bias<T: RealField> {
     rad_per_s: Vector3<T>,
     at_rest: Option<Vector3<T>>,
     source: Source,
-    /// Samples since the start.
-    age: u32,
-    /// Fields since the start that told of the heading.
-    fields: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Coefficients<T> {
-    period: T,
-    field_period: T,
     /// rad/s.
     largest: T,
-    /// Gain in one sample, 1/s.
-    tilt: T,
-    tilt_start: T,
-    /// Samples until the gain is the lasting one.
-    tilt_start_samples: u32,
-    heading: T,
-    heading_start: T,
-    rest_worth: T,
     /// Samples a mean at rest goes back at most.
     memory: u32,
-    /// Fields before the first of which the heading has not settled.
-    field_start: u32,
 }
 
 /// A rest of hours follows the temperature: the mean goes back a minute, s.
 const MEMORY: f64 = 60.0;
-/// The compass is left alone for its first second.
-const FIELD_START: f64 = 1.0;
+
+impl<T: RealField + Copy> Coefficients<T> {
+    fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {
+        Self {
+            largest: size(parameters.largest_bias_dps * convert(RADIANS_PER_DEGREE)),
+            memory: samples(Seconds(convert(MEMORY)), rates.sample),
+        }
+    }
+}
 
 impl<T: RealField + Copy> Bias<T> {
     pub(super) fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {
-        use crate::units::Seconds;
         Self {
-            coefficients: Coefficients {
-                period: rates.sample.0,
-                field_period: rates.field.0,
-                largest: parameters.largest_bias_dps * convert(RADIANS_PER_DEGREE),
-                tilt: parameters.tilt_integral * rates.sample.0,
-                tilt_start: parameters.tilt_integral_start.0,
-                tilt_start_samples: samples(parameters.tilt_integral_start, rates.sample),
-                heading: parameters.heading_integral * rates.field.0,
-                heading_start: parameters.heading_integral_start * rates.field.0,
-                rest_worth: parameters.rest_worth.0,
-                memory: samples(Seconds(convert(MEMORY)), rates.sample),
-                field_start: samples(Seconds(convert(FIELD_START)), rates.field),
-            },
+            coefficients: Coefficients::new(parameters, rates),
             rad_per_s: Vector3::zeros(),
             at_rest: None,
             source: Source::Unmeasured,
-            age: 0,
-            fields: 0,
         }
+    }
+
+    pub(super) fn tune(&mut self, parameters: &Parameters<T>, rates: Rates<T>) {
+        self.coefficients = Coefficients::new(parameters, rates);
     }
 
     /// As it is subtracted.
@@ -110,61 +90,18 @@ impl<T: RealField + Copy> Bias<T> {
 
     /// The `number`th sample of a rest (from 1): the mean of the low-passed rate.
     pub(super) fn rests(&mut self, mean_rate: Vector3<T>, number: u32) {
-        self.age = self.age.saturating_add(1);
         let number = number.min(self.coefficients.memory);
-        let share = T::one() / convert(f64::from(number));
-        self.rad_per_s = self.bounded(self.rad_per_s + (mean_rate - self.rad_per_s) * share);
+        let step = (mean_rate - self.rad_per_s) * share::<T>(number);
+        self.rad_per_s = self.bounded(self.rad_per_s + step);
         self.at_rest = Some(self.rad_per_s);
         self.source = Source::Rest { samples: 0 };
     }
 
     /// A sample on the move.
     pub(super) fn moves(&mut self) {
-        self.age = self.age.saturating_add(1);
         if let Source::Rest { samples } = &mut self.source {
             *samples = samples.saturating_add(1);
         }
-    }
-
-    /// The errors of this sample, times their gains: rad/s in the world.
-    ///
-    /// The gain for tilt is k_i max(1, t₀/(1 + t)): high at first, when nothing is known. That for
-    /// the heading falls in the same way until there was a rest; a rest tells more of the bias than
-    /// any compass near steel, so after one the integral comes back only as the temperature may have
-    /// changed.
-    pub(super) fn integrals(&mut self, tilt: [T; 2], heading: Option<T>) -> Vector3<T> {
-        let Coefficients {
-            period,
-            field_period,
-            tilt: mut tilt_gain,
-            tilt_start,
-            tilt_start_samples,
-            heading: heading_gain,
-            heading_start,
-            rest_worth,
-            field_start,
-            ..
-        } = self.coefficients;
-        let seconds = |samples: u32, period: T| convert::<f64, T>(f64::from(samples)) * period;
-        if self.age <= tilt_start_samples {
-            let high = tilt_start / (T::one() + seconds(self.age, period));
-            tilt_gain *= high.max(T::one());
-        }
-        let heading = heading.map_or_else(T::zero, |error| {
-            self.fields = self.fields.saturating_add(1);
-            if self.fields <= field_start {
-                return T::zero();
-            }
-            let gain = match self.source {
-                Source::Unmeasured => heading_gain
-                    .max(heading_start / (T::one() + seconds(self.fields, field_period))),
-                Source::Rest { samples } => {
-                    heading_gain * (seconds(samples, period) / rest_worth).min(T::one())
-                }
-            };
-            error * gain
-        });
-        Vector3::new(tilt[0] * tilt_gain, heading, tilt[1] * tilt_gain)
     }
 
     /// Takes an error of the rate (rad/s, body frame) off the bias.

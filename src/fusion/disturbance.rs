@@ -1,7 +1,7 @@
 //! The field of the earth is the same wherever the sensor points: its horizontal and its vertical
 //! part stay. Near steel or a magnet they do not.
 
-use super::parameters::{Parameters, samples, weight};
+use super::parameters::{Parameters, samples, share, weight};
 use crate::units::Seconds;
 use nalgebra::{RealField, convert};
 
@@ -47,17 +47,23 @@ struct Coefficients<T> {
 /// How quickly the candidate follows the field that does not fit, s.
 const CANDIDATE_TIME: f64 = 5.0;
 
-impl<T: RealField + Copy> Disturbance<T> {
-    pub fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
+impl<T: RealField + Copy> Coefficients<T> {
+    fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
         let [least, most] = parameters.new_field_time.map(|time| samples(time, period));
         Self {
-            coefficients: Coefficients {
-                tolerance: parameters.field_tolerance * parameters.field_tolerance,
-                follow: weight(period.0 / parameters.field_time.0),
-                candidate_follow: weight(period.0 / convert(CANDIDATE_TIME)),
-                least,
-                most,
-            },
+            tolerance: parameters.field_tolerance * parameters.field_tolerance,
+            follow: weight(period.0 / parameters.field_time.0),
+            candidate_follow: weight(period.0 / convert(CANDIDATE_TIME)),
+            least,
+            most,
+        }
+    }
+}
+
+impl<T: RealField + Copy> Disturbance<T> {
+    pub fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
+        Self {
+            coefficients: Coefficients::new(parameters, period),
             reference: None,
             met: 0,
             candidate: [T::zero(); 2],
@@ -66,6 +72,10 @@ impl<T: RealField + Copy> Disturbance<T> {
             age: 0,
             verdict: FieldVerdict::Absent,
         }
+    }
+
+    pub fn tune(&mut self, parameters: &Parameters<T>, period: Seconds<T>) {
+        self.coefficients = Coefficients::new(parameters, period);
     }
 
     /// One field. `turning` says whether the sensor turns: only then does a constant field tell
@@ -136,8 +146,4 @@ fn fits<T: RealField + Copy>(field: Dip<T>, reference: Dip<T>, tolerance: T) -> 
 
 fn towards<T: RealField + Copy>(from: Dip<T>, to: Dip<T>, weight: T) -> Dip<T> {
     [0, 1].map(|i| from[i] + (to[i] - from[i]) * weight)
-}
-
-fn share<T: RealField + Copy>(number: u32) -> T {
-    T::one() / convert(f64::from(number))
 }

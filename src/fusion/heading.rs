@@ -2,7 +2,7 @@
 //! but never tilts it.
 
 use super::disturbance::{Disturbance, FieldVerdict};
-use super::parameters::{Parameters, low_pass_weight};
+use super::parameters::{Parameters, low_pass_weight, share};
 use crate::units::{RADIANS_PER_DEGREE, Seconds};
 use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
 
@@ -38,6 +38,11 @@ impl<T: RealField + Copy> Heading<T> {
         }
     }
 
+    pub fn tune(&mut self, parameters: &Parameters<T>, period: Seconds<T>) {
+        self.low_pass = low_pass_weight(parameters.heading_time, period);
+        self.disturbance.tune(parameters, period);
+    }
+
     /// One field, µT, in the world of the inclination. Returns the error of the heading before it was
     /// corrected, or none if the field tells nothing: it is disturbed, or has no horizontal part.
     ///
@@ -68,16 +73,18 @@ impl<T: RealField + Copy> Heading<T> {
         } else {
             x / horizontal
         };
-        let share = T::one() / convert(f64::from(self.age));
-        let half = error * self.low_pass.max(share) * convert(0.5);
+        let half = error * self.low_pass.max(share(self.age)) * convert(0.5);
         self.turn_by(half);
         Some(error)
     }
 
-    /// Turns on by twice this half angle.
+    /// Turns on by twice this half angle, which is half a radian at most: series good to 1e-7.
     fn turn_by(&mut self, half: T) {
         let [c, s] = self.half;
-        let (sin, cos) = half.sin_cos();
+        let d = |denominator: f64| -> T { convert(1.0 / denominator) };
+        let h = half * half;
+        let sin = half * (T::one() - h * (d(6.0) - h * (d(120.0) - h * d(5040.0))));
+        let cos = T::one() - h * (d(2.0) - h * (d(24.0) - h * (d(720.0) - h * d(40320.0))));
         let turned = [c * cos - s * sin, s * cos + c * sin];
         let squared = turned[0] * turned[0] + turned[1] * turned[1];
         let scale = (convert::<f64, T>(3.0) - squared) * convert(0.5);

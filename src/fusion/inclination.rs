@@ -1,7 +1,8 @@
 //! Tilt without drift from gyro and accelerometer; the heading is the gyro's.
 
-use super::parameters::{Parameters, samples, weight};
-use crate::orientation::tilt;
+use super::parameters::{Parameters, low_pass_weight_of, samples, share, size, weight};
+use crate::orientation::quaternion::trued;
+use crate::orientation::{gyro, tilt};
 use crate::units::{AngularRate, METRES_PER_S2_PER_G, Seconds, SpecificForce};
 use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
 
@@ -34,8 +35,8 @@ impl<T: RealField + Copy> Coefficients<T> {
         let natural = convert::<f64, T>(core::f64::consts::SQRT_2) / parameters.tilt_time.0;
         let twice_damping = parameters.damping * convert(2.0);
         Self {
-            half_period: period.0 * convert(0.5),
-            low_pass: weight(-(-twice_damping * natural * period.0).exp_m1()),
+            half_period: size(period.0) * convert(0.5),
+            low_pass: low_pass_weight_of(parameters, period),
             correction: weight(natural * period.0 / twice_damping),
             per_g: convert(1.0 / METRES_PER_S2_PER_G),
             start: samples(parameters.start_time, period),
@@ -53,14 +54,17 @@ impl<T: RealField + Copy> Inclination<T> {
         }
     }
 
-    /// One sample, body frame, bias removed. Returns b, radians about x and z of the world: how far
-    /// from level the last seconds were.
+    pub fn tune(&mut self, parameters: &Parameters<T>, period: Seconds<T>) {
+        self.coefficients = Coefficients::new(parameters, period);
+    }
+
+    /// One sample, body frame, bias removed.
     ///
     /// 1. q ← q exp(ωΔt/2) (eq. 17 and 18 of the course notes);
     /// 2. a ← q f q⁻¹/g, *not* normalised, and its error e = a × y = (−a_z, 0, a_x);
-    /// 3. b ← b + k_l(e − b), and of that c = k_c b; in the first second c = e/n instead;
+    /// 3. b ← b + k_l(e − b), and of that c = k_c b; in the first second c = e/n instead, and b is 0;
     /// 4. q ← (1, c/2) q.
-    pub fn update(&mut self, rate: AngularRate<T>, force: SpecificForce<T>) -> [T; 2] {
+    pub fn update(&mut self, rate: AngularRate<T>, force: SpecificForce<T>) {
         let Coefficients {
             half_period,
             low_pass,
@@ -72,24 +76,31 @@ impl<T: RealField + Copy> Inclination<T> {
         let q_omega = UnitQuaternion::new_unchecked(turned);
         let up = q_omega * force.m_per_s2() * per_g;
         let e = [-up.z, up.x];
-        self.error = [0, 1].map(|i| self.error[i] + low_pass * (e[i] - self.error[i]));
         let c = if self.age < start {
             self.age += 1;
-            let share = T::one() / convert(f64::from(self.age));
+            let share = share(self.age);
             // A knock in the first samples must not turn the picture over.
             e.map(|e| e.clamp(-T::one(), T::one()) * share)
         } else {
+            self.error = [0, 1].map(|i| self.error[i] + low_pass * (e[i] - self.error[i]));
             self.error.map(|error| error * correction)
         };
-        let half: T = convert(0.5);
-        let correction = Quaternion::new(T::one(), c[0] * half, T::zero(), c[1] * half);
-        self.orientation = renormalised(correction * turned);
-        self.error
+        self.orientation = renormalised(tilted(c, turned));
     }
 
     /// Body to world.
     pub fn orientation(&self) -> UnitQuaternion<T> {
         self.orientation
+    }
+
+    /// b, radians about x and z of the world: how far from level the last seconds were.
+    pub fn error(&self) -> [T; 2] {
+        self.error
+    }
+
+    /// Whether the start is over, so that an error is the gyro's and not the start's.
+    pub fn is_settled(&self) -> bool {
+        self.age >= self.coefficients.start
     }
 
     /// A vector of the body as seen from the world.
@@ -109,6 +120,13 @@ impl<T: RealField + Copy> Inclination<T> {
         self.age = 0;
     }
 
+    /// Goes on from here.
+    pub fn set(&mut self, orientation: UnitQuaternion<T>) {
+        self.orientation = trued(orientation);
+        self.error = [T::zero(); 2];
+        self.age = self.coefficients.start;
+    }
+
     /// The same with heading 0.
     pub fn restart(&mut self, force: SpecificForce<T>) {
         self.orientation = UnitQuaternion::identity();
@@ -121,12 +139,24 @@ impl<T: RealField + Copy> Inclination<T> {
 fn step<T: RealField + Copy>(half: Vector3<T>) -> Quaternion<T> {
     let s = half.norm_squared();
     if s > convert(0.16) {
-        return Quaternion::from_imag(half).exp();
+        let whole = AngularRate::from_rad_per_s(half + half);
+        return *gyro::step(whole, Seconds(T::one())).quaternion();
     }
     let c = |denominator: f64| -> T { convert(1.0 / denominator) };
     let w = T::one() - s * (c(2.0) - s * c(24.0));
     let xyz = half * (T::one() - s * (c(6.0) - s * c(120.0)));
     Quaternion::from_parts(w, xyz)
+}
+
+/// (1, c_x/2, 0, c_z/2) q, with the products by zero and one left out.
+fn tilted<T: RealField + Copy>(c: [T; 2], q: Quaternion<T>) -> Quaternion<T> {
+    let [x, z] = c.map(|c| c * convert(0.5));
+    Quaternion::new(
+        q.w - x * q.i - z * q.k,
+        q.i + x * q.w - z * q.j,
+        q.j - x * q.k + z * q.i,
+        q.k + x * q.j + z * q.w,
+    )
 }
 
 /// One step of Newton's iteration for 1/|q|: after one sample the length is off by a few millionths,

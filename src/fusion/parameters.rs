@@ -2,7 +2,7 @@
 //! which would mean another filter at another rate.
 
 use crate::units::Seconds;
-use nalgebra::{ComplexField, RealField, convert};
+use nalgebra::{RealField, convert, try_convert};
 
 /// How often samples come.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,10 +27,9 @@ pub struct Parameters<T> {
     pub lead: Seconds<T>,
     /// The force averaged at the start, weighing every sample alike. 1 s.
     pub start_time: Seconds<T>,
-    /// Gain of the integral of the tilt's error into the bias, 1/s². 0.005.
+    /// Gain of the integral of the tilt's error into the bias, 1/s². 0.01.
     pub tilt_integral: T,
-    /// So long after the start the integral is down to that gain; before, it is `time/(1 + t)` times as
-    /// large. 80 s.
+    /// Until the first rest the gain is `time/(1 + t)` times as large, down to the gain itself. 80 s.
     pub tilt_integral_start: Seconds<T>,
     /// Low-pass of rate and force for the detection of rest. 0.5 s.
     pub rest_filter_time: Seconds<T>,
@@ -72,7 +71,7 @@ impl<T: RealField + Copy> Default for Parameters<T> {
             damping: convert(0.5),
             lead: seconds(0.0),
             start_time: seconds(1.0),
-            tilt_integral: convert(0.005),
+            tilt_integral: convert(0.01),
             tilt_integral_start: seconds(80.0),
             rest_filter_time: seconds(0.5),
             rest_time: seconds(1.5),
@@ -96,6 +95,16 @@ pub(super) fn low_pass_weight<T: RealField + Copy>(time: Seconds<T>, period: Sec
     weight(-(-period.0 / time.0).exp_m1())
 }
 
+/// The share of the newest in the low-pass of the tilt's error, 1 − exp(−2ζω₀Δt) with ω₀ = √2/τ.
+pub(super) fn low_pass_weight_of<T: RealField + Copy>(
+    parameters: &Parameters<T>,
+    period: Seconds<T>,
+) -> T {
+    let twice_damping = parameters.damping * convert(2.0);
+    let time = parameters.tilt_time.0 / (twice_damping * convert(core::f64::consts::SQRT_2));
+    low_pass_weight(Seconds(time), period)
+}
+
 /// A weight of no meaning is the nearer end; one that is not a number is none.
 pub(super) fn weight<T: RealField + Copy>(value: T) -> T {
     if value > T::zero() {
@@ -105,10 +114,30 @@ pub(super) fn weight<T: RealField + Copy>(value: T) -> T {
     }
 }
 
+/// A size or a gain that has no meaning is none.
+pub(super) fn size<T: RealField + Copy>(value: T) -> T {
+    if value > T::zero() && value.is_finite() {
+        value
+    } else {
+        T::zero()
+    }
+}
+
 /// Whole samples in a time, at least one; what is no time is one sample, what is without end the
 /// largest number.
 pub(super) fn samples<T: RealField + Copy>(time: Seconds<T>, period: Seconds<T>) -> u32 {
-    let count: f64 = nalgebra::try_convert(time.0 / period.0).unwrap_or(0.0);
+    let count: f32 = try_convert((time.0 / period.0).round()).unwrap_or(0.0);
     // A cast to an integer saturates, and makes zero of what is not a number.
-    (ComplexField::round(count) as u32).max(1)
+    (count as u32).max(1)
+}
+
+/// A count as a scalar. By way of single precision, which is what the board has, and near enough for a
+/// time.
+pub(super) fn scalar<T: RealField + Copy>(count: u32) -> T {
+    convert(count as f32)
+}
+
+/// 1/n: what the nth of as many has a share of in their mean.
+pub(super) fn share<T: RealField + Copy>(count: u32) -> T {
+    T::one() / scalar(count)
 }

@@ -1,6 +1,6 @@
 //! Nothing moves if rate and force have stayed close to their own low-pass for a while.
 
-use super::parameters::{Parameters, low_pass_weight, samples};
+use super::parameters::{Parameters, low_pass_weight, samples, size};
 use crate::units::{AngularRate, RADIANS_PER_DEGREE, Seconds};
 use nalgebra::{RealField, Vector3, convert};
 
@@ -49,25 +49,35 @@ struct Coefficients<T> {
 /// A bias that is not the one known is believed after so many times the time of rest.
 const LONG: u32 = 20;
 
-impl<T: RealField + Copy> Rest<T> {
-    pub fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
+impl<T: RealField + Copy> Coefficients<T> {
+    fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
         let radians: T = convert(RADIANS_PER_DEGREE);
-        let rate = parameters.rest_rate_dps * radians;
+        let rate = size(parameters.rest_rate_dps * radians);
         let calm = samples(parameters.rest_time, period);
         Self {
-            coefficients: Coefficients {
-                low_pass: low_pass_weight(parameters.rest_filter_time, period),
-                rate: rate * rate,
-                force: parameters.rest_force * parameters.rest_force,
-                largest_bias: parameters.largest_bias_dps * radians,
-                largest_change: parameters.largest_change_dps * radians,
-                calm,
-                long: calm.saturating_mul(LONG),
-            },
+            low_pass: low_pass_weight(parameters.rest_filter_time, period),
+            rate: rate * rate,
+            force: size(parameters.rest_force) * size(parameters.rest_force),
+            largest_bias: parameters.largest_bias_dps * radians,
+            largest_change: parameters.largest_change_dps * radians,
+            calm,
+            long: calm.saturating_mul(LONG),
+        }
+    }
+}
+
+impl<T: RealField + Copy> Rest<T> {
+    pub fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
+        Self {
+            coefficients: Coefficients::new(parameters, period),
             mean: None,
             calm: 0,
             motion: Motion::Moving { samples: 0 },
         }
+    }
+
+    pub fn tune(&mut self, parameters: &Parameters<T>, period: Seconds<T>) {
+        self.coefficients = Coefficients::new(parameters, period);
     }
 
     /// One sample, rad/s with its bias and m/s², body frame.

@@ -1,0 +1,271 @@
+//! What a line that begins with a colon asks for: `:verb words`. `docs/commands.md` lists them all.
+
+use core::fmt;
+use heapless::String;
+
+use super::number;
+use crate::wire::Decimals;
+
+/// A line understood.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Request {
+    /// `:help`: which verbs there are.
+    Help,
+    /// `:version`.
+    Version,
+    /// `:estimator` asks, `:estimator default` and `:estimator notes` choose.
+    Estimator(Option<Choice>),
+    /// `:get NAME`.
+    Get(Setting),
+    /// `:set NAME VALUE`, in the setting's unit and range.
+    Set(Setting, f32),
+    /// `:defaults`: every setting as it was, the default estimator, the compass on.
+    Defaults,
+    /// `:compass` asks, `:compass on` and `:compass off` choose.
+    Compass(Option<bool>),
+    /// `:decimals` asks, `:decimals 3` to `:decimals 6` choose: of a quaternion in the stream.
+    Decimals(Option<Decimals>),
+    /// `:bias`: what the gyro reads at rest, and how that is known.
+    Bias,
+}
+
+/// Which estimator makes the orientation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// [`Fusion`](crate::fusion::Fusion).
+    #[default]
+    Default,
+    /// [`Complementary`](crate::orientation::complementary::Complementary), eq. 24 of the course notes.
+    Notes,
+}
+
+impl Choice {
+    /// As it is typed.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Default => "default",
+            Self::Notes => "notes",
+        }
+    }
+}
+
+/// What can be set, one number each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Setting {
+    /// τ of the default estimator's tilt.
+    TiltTime,
+    /// ζ of it.
+    Damping,
+    /// How far ahead of the last sample the orientation is given.
+    Lead,
+    /// τ of its heading.
+    HeadingTime,
+    /// How far the field may lie from the reference.
+    FieldTolerance,
+    /// τ of the notes' filter.
+    NotesTime,
+    /// α of the notes' filter, the gyro's weight in a sample of a millisecond.
+    NotesAlpha,
+}
+
+impl Setting {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::TiltTime,
+        Self::Damping,
+        Self::Lead,
+        Self::HeadingTime,
+        Self::FieldTolerance,
+        Self::NotesTime,
+        Self::NotesAlpha,
+    ];
+
+    /// As it is typed.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::TiltTime => "tilt-time",
+            Self::Damping => "damping",
+            Self::Lead => "lead",
+            Self::HeadingTime => "heading-time",
+            Self::FieldTolerance => "field-tolerance",
+            Self::NotesTime => "notes-time",
+            Self::NotesAlpha => "notes-alpha",
+        }
+    }
+
+    /// Of its value; empty for a plain number.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::TiltTime | Self::HeadingTime | Self::NotesTime => "s",
+            Self::Lead => "ms",
+            Self::Damping | Self::FieldTolerance | Self::NotesAlpha => "",
+        }
+    }
+
+    /// Least and greatest value.
+    pub const fn range(self) -> [f32; 2] {
+        match self {
+            Self::TiltTime => [0.1, 100.0],
+            Self::Damping => [0.1, 5.0],
+            Self::Lead => [0.0, 100.0],
+            Self::HeadingTime => [0.1, 1000.0],
+            Self::FieldTolerance => [0.01, 1.0],
+            Self::NotesTime => [0.0, 1000.0],
+            Self::NotesAlpha => [0.0, 1.0],
+        }
+    }
+}
+
+/// The word a line was refused for; what is too long for an answer is cut off.
+pub type Word = String<20>;
+
+/// Why a line was not understood.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    word: Word,
+    reason: Reason,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Reason {
+    UnknownVerb,
+    /// One of these is wanted.
+    Wanted(&'static str),
+    UnknownSetting,
+    NotANumber,
+    OutOfRange(Setting),
+    TooMany,
+    TooLong,
+}
+
+impl fmt::Display for Refusal {
+    /// The offending word first, then what to do: at most 90 bytes.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.word)?;
+        f.write_str(": ")?;
+        match self.reason {
+            Reason::UnknownVerb => f.write_str("no such verb, :help lists them"),
+            Reason::Wanted(words) => write!(f, "{words} is wanted"),
+            Reason::UnknownSetting => f.write_str("no such setting, :set lists them"),
+            Reason::NotANumber => f.write_str("a number like 0.98 is wanted"),
+            Reason::OutOfRange(setting) => {
+                let [least, greatest] = setting.range();
+                let (name, unit) = (setting.name(), setting.unit());
+                write!(
+                    f,
+                    "{name} is {} to {} {unit}",
+                    Short(least),
+                    Short(greatest)
+                )
+            }
+            Reason::TooMany => f.write_str("one word too many"),
+            Reason::TooLong => f.write_str("the line is too long"),
+        }
+    }
+}
+
+/// A range's end without the machinery for floats: tens of thousandths at most.
+struct Short(f32);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let hundredths = (self.0 * 100.0 + 0.5) as u32;
+        match (hundredths / 100, hundredths % 100) {
+            (whole, 0) => write!(f, "{whole}"),
+            (whole, tens) if tens % 10 == 0 => write!(f, "{whole}.{}", tens / 10),
+            (whole, tens) => write!(f, "{whole}.{tens:02}"),
+        }
+    }
+}
+
+impl Refusal {
+    fn new(word: &str, reason: Reason) -> Self {
+        let mut cut = Word::new();
+        for c in word.chars().take_while(|c| !c.is_control()) {
+            if cut.push(c).is_err() {
+                break;
+            }
+        }
+        Self { word: cut, reason }
+    }
+
+    /// For a line that began like this and found no end.
+    pub(super) fn too_long(line: &str) -> Self {
+        let first = line.split(' ').next().unwrap_or_default();
+        Self::new(first, Reason::TooLong)
+    }
+}
+
+/// Names of [`Setting::ALL`].
+const SETTINGS: &str = "tilt-time damping lead heading-time field-tolerance notes-time notes-alpha";
+
+/// A line without its colon and its end. Words are separated by spaces, any number of them.
+///
+/// # Errors
+///
+/// [`Refusal`] names the first word that is wrong.
+pub fn parse(line: &str) -> Result<Request, Refusal> {
+    let mut words = line.split(' ').filter(|word| !word.is_empty());
+    let verb = words.next().unwrap_or_default();
+    let mut next = || words.next();
+    let request = match verb {
+        "help" => Request::Help,
+        "version" => Request::Version,
+        "defaults" => Request::Defaults,
+        "bias" => Request::Bias,
+        "estimator" => Request::Estimator(match next() {
+            None => None,
+            Some("default") => Some(Choice::Default),
+            Some("notes") => Some(Choice::Notes),
+            Some(other) => return refuse(other, Reason::Wanted("default or notes")),
+        }),
+        "compass" => Request::Compass(match next() {
+            None => None,
+            Some("on") => Some(true),
+            Some("off") => Some(false),
+            Some(other) => return refuse(other, Reason::Wanted("on or off")),
+        }),
+        "decimals" => Request::Decimals(match next() {
+            None => None,
+            Some(word) => {
+                let digit = word.parse().ok().and_then(Decimals::new);
+                let Some(decimals) = digit else {
+                    return refuse(word, Reason::Wanted("3 to 6"));
+                };
+                Some(decimals)
+            }
+        }),
+        "get" => Request::Get(setting(verb, next())?),
+        "set" => {
+            let setting = setting(verb, next())?;
+            let Some(word) = next() else {
+                return refuse(setting.name(), Reason::NotANumber);
+            };
+            let Some(value) = number::parse(word) else {
+                return refuse(word, Reason::NotANumber);
+            };
+            let [least, greatest] = setting.range();
+            if !(least..=greatest).contains(&value) {
+                return refuse(word, Reason::OutOfRange(setting));
+            }
+            Request::Set(setting, value)
+        }
+        other => return refuse(other, Reason::UnknownVerb),
+    };
+    match words.next() {
+        Some(word) => refuse(word, Reason::TooMany),
+        None => Ok(request),
+    }
+}
+
+fn refuse<T>(word: &str, reason: Reason) -> Result<T, Refusal> {
+    Err(Refusal::new(word, reason))
+}
+
+fn setting(verb: &str, word: Option<&str>) -> Result<Setting, Refusal> {
+    let Some(word) = word else {
+        return refuse(verb, Reason::Wanted(SETTINGS));
+    };
+    let found = Setting::ALL.into_iter().find(|s| s.name() == word);
+    found.ok_or_else(|| Refusal::new(word, Reason::UnknownSetting))
+}
