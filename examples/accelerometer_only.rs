@@ -20,7 +20,7 @@ use std::fmt::Write as _;
 use std::process::ExitCode;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use picture::{Line, Picture, Scale, Stroke};
+use picture::{Line, Picture};
 use vrduino::orientation::complementary::Complementary;
 use vrduino::orientation::{DEFAULT_TIME_CONSTANT, TimeConstant, accelerometer};
 use vrduino::sensor::Sample;
@@ -30,12 +30,11 @@ use vrduino_emulator::motion::{Head, Imperfect, Imperfections};
 const PERIOD: f64 = 0.005;
 /// Samples at the beginning that the bias is taken from: two seconds.
 const REST: u32 = 400;
-/// In the order of drawing.
-const LINES: [(&str, Stroke); 4] = [
-    ("accelerometer alone: heading", Stroke::Plain),
-    ("alone: tilt", Stroke::Plain),
-    ("fused: heading", Stroke::Plain),
-    ("fused: tilt", Stroke::Plain),
+const NAMES: [&str; 4] = [
+    "accelerometer alone: heading",
+    "alone: tilt",
+    "fused: heading",
+    "fused: tilt",
 ];
 
 fn main() -> ExitCode {
@@ -88,7 +87,7 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
         "{:28} {:>9} {:>9}",
         "error in degrees", "rms", "largest"
     )?;
-    for ((name, _), points) in LINES.iter().zip(&errors) {
+    for (name, points) in NAMES.iter().zip(&errors) {
         let sum: f64 = points.iter().map(|[_, error]| error * error).sum();
         let largest = points.iter().fold(0.0_f64, |most, [_, e]| most.max(*e));
         let rms = (sum / points.len() as f64).sqrt();
@@ -96,12 +95,7 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     }
     // Ten points a second are enough to look at.
     let thinned = errors.map(|points| points.into_iter().step_by(20).collect());
-    let lines = LINES.into_iter().zip(thinned);
-    let lines = lines.map(|((name, stroke), points)| Line {
-        name,
-        stroke,
-        points,
-    });
+    let lines = NAMES.into_iter().zip(thinned);
     let picture = Picture {
         title: &format!(
             "Accelerometer alone, and fused with the gyro: {}",
@@ -109,8 +103,7 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
         ),
         x: "time (s)",
         y: "error (°)",
-        scales: [Scale::Even; 2],
-        lines: lines.collect(),
+        lines: lines.map(|(name, points)| Line { name, points }).collect(),
     };
     Ok(writeln!(
         text,

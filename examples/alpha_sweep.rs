@@ -4,9 +4,9 @@
 //! Run with `cargo run --example alpha_sweep`, on a generated head, or with a recording:
 //! `cargo run --example alpha_sweep -- FILE` (.imub or .csv). Expect a best weight between the ends: a
 //! small α follows every acceleration as if it were a change of up, α = 1 drifts. A weight means nothing
-//! without the sample period, so the time constant is printed beside it. The gyro is used as the
-//! firmware does, without the bias it shows at rest, and beside that as it is: a bias left in it asks
-//! for a shorter time. The firmware's 7.6 s is the best for many motions together;
+//! without the sample period, so the time constant is printed beside it. The gyro is used as a
+//! tracker does, without the bias it shows at rest, and beside that as it is: a bias left in it asks
+//! for a shorter time. The library's 7.6 s is the best for many motions together;
 //! a single one may have its minimum elsewhere.
 
 #[path = "motion/mod.rs"]
@@ -20,7 +20,7 @@ mod program;
 
 use motion::Chosen;
 use nalgebra::{UnitQuaternion, Vector3};
-use picture::{Line, Picture, Scale, Stroke};
+use picture::{Line, Look, Picture, Scale, Stroke};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -113,10 +113,10 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
         raw[1], raw[0], corrected[1], corrected[0]
     )?;
     let [raw, corrected] = curves;
-    let line = |name, stroke, points| Line {
-        name,
-        stroke,
-        points,
+    let line = |name, points| Line { name, points };
+    let look = Look {
+        scales: [Scale::Decades; 2],
+        strokes: &[Stroke::Dashed],
     };
     let picture = Picture {
         title: &format!(
@@ -125,15 +125,14 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
         ),
         x: "time constant of the complementary filter (s)",
         y: "rms error of inclination (°)",
-        scales: [Scale::Decades; 2],
         lines: vec![
-            line("gyro as it is", Stroke::Dashed, raw),
-            line("without its bias at rest", Stroke::Plain, corrected),
+            line("gyro as it is", raw),
+            line("without its bias at rest", corrected),
         ],
     };
     Ok(writeln!(
         text,
         "{}",
-        picture.save("alpha_sweep")?.display()
+        picture.save_with("alpha_sweep", &look)?.display()
     )?)
 }

@@ -12,7 +12,7 @@ mod picture;
 mod program;
 
 use nalgebra::Vector3;
-use picture::{Line, Picture, Scale, Stroke};
+use picture::{Line, Picture};
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -84,9 +84,8 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
             )?;
         }
     }
-    let line = |name, stroke, step, bias_dps| Line {
+    let line = |name, step, bias_dps| Line {
         name,
-        stroke,
         // Every 20 ms are enough to draw.
         points: (errors(step, bias_dps).into_iter())
             .step_by((0.02 / step).round() as usize)
@@ -95,13 +94,12 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     let picture = Picture {
         title: "Drift of the gyro, integration against bias: a swing of 60° to and fro each second",
         x: "time (s)",
-        scales: [Scale::Even; 2],
         y: "error (°)",
         lines: vec![
-            line("10 ms, no bias", Stroke::Plain, 0.01, 0.0),
-            line("1 ms, no bias", Stroke::Plain, 0.001, 0.0),
-            line("10 ms, 0.1 °/s", Stroke::Plain, 0.01, 0.1),
-            line("1 ms, 0.1 °/s", Stroke::Plain, 0.001, 0.1),
+            line("10 ms, no bias", 0.01, 0.0),
+            line("1 ms, no bias", 0.001, 0.0),
+            line("10 ms, 0.1 °/s", 0.01, 0.1),
+            line("1 ms, 0.1 °/s", 0.001, 0.1),
         ],
     };
     Ok(writeln!(

@@ -12,7 +12,7 @@ mod picture;
 mod program;
 
 use nalgebra::Vector3;
-use picture::{Line, Picture, Scale, Stroke};
+use picture::{Line, Look, Picture, Scale, Stroke};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -69,9 +69,8 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     );
     let period = Seconds(PERIOD);
     let mut flat = Flatland::new(TimeConstant::from_gyro_weight(ALPHA, period), period);
-    let mut lines = LINES.map(|(name, stroke)| Line {
+    let mut lines = LINES.map(|(name, _)| Line {
         name,
-        stroke,
         points: Vec::new(),
     });
     let (mut squares, mut means) = ([0.0; 3], [0.0; 3]);
@@ -113,16 +112,19 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     for ((name, _), (square, mean)) in LINES.iter().skip(1).zip(squares.iter().zip(means)) {
         writeln!(text, "{name:13} {:9.2}° {mean:11.2}°", square.sqrt())?;
     }
+    let look = Look {
+        scales: [Scale::Even; 2],
+        strokes: &LINES.map(|(_, stroke)| stroke),
+    };
     let picture = Picture {
         title: "Roll in flatland, by simulated sensors (course notes, figure 3)",
         x: "time (s)",
-        scales: [Scale::Even; 2],
         y: "roll (°)",
         lines: lines.into(),
     };
     Ok(writeln!(
         text,
         "{}",
-        picture.save("flatland_figure_3")?.display()
+        picture.save_with("flatland_figure_3", &look)?.display()
     )?)
 }

@@ -14,7 +14,7 @@ mod picture;
 mod program;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use picture::{Line, Picture, Scale, Stroke};
+use picture::{Line, Picture};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -100,17 +100,14 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     let picture = Picture {
         title: "Error of both filters while pitch goes past 90°: gimbal lock",
         x: "time (s)",
-        scales: [Scale::Even; 2],
         y: "error (°)",
         lines: vec![
             Line {
                 name: "Euler filter (2016 lecture)",
-                stroke: Stroke::Plain,
                 points: euler,
             },
             Line {
                 name: "quaternion filter (notes)",
-                stroke: Stroke::Plain,
                 points: quaternion,
             },
         ],

@@ -18,7 +18,7 @@ mod program;
 
 use motion::Chosen;
 use nalgebra::{UnitQuaternion, Vector3};
-use picture::{Line, Picture, Scale, Stroke};
+use picture::{Line, Look, Picture, Scale, Stroke};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -81,9 +81,8 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     let mut gyro = LectureDeadReckoning::new(PERIOD);
     let mut fused = LectureComplementary::new(TimeConstant::new(TIME_CONSTANT), PERIOD);
     let mut notes = Complementary::new(TimeConstant::new(TIME_CONSTANT), PERIOD);
-    let mut lines = LINES.map(|(name, stroke)| Line {
+    let mut lines = LINES.map(|(name, _)| Line {
         name,
-        stroke,
         points: Vec::new(),
     });
     let (mut squares, mut compared) = ([0.0; 4], 0.0);
@@ -126,16 +125,19 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     for ((name, _), square) in LINES.iter().skip(1).zip(squares) {
         writeln!(text, "{name:17} {:9.2}°", f64::sqrt(square / compared))?;
     }
+    let look = Look {
+        scales: [Scale::Even; 2],
+        strokes: &LINES.map(|(_, stroke)| stroke),
+    };
     let picture = Picture {
         title: &format!("Pitch over time (2016 lecture): {}", motion.name),
         x: "time (s)",
         y: "pitch (°)",
-        scales: [Scale::Even; 2],
         lines: lines.into(),
     };
     Ok(writeln!(
         text,
         "{}",
-        picture.save("pitch_over_time")?.display()
+        picture.save_with("pitch_over_time", &look)?.display()
     )?)
 }

@@ -10,7 +10,7 @@ use std::fmt::{self, Write as _};
 use std::process::ExitCode;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use picture::{Line, Picture, Scale, Stroke};
+use picture::{Line, Look, Picture, Scale};
 use vrduino::orientation::angles::{PitchRoll, pitch_and_roll, pitch_full_circle};
 use vrduino::orientation::flatland::shortest_turn;
 use vrduino::orientation::quaternion::axis_angle;
@@ -56,20 +56,24 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     let lines = [("printed", 0), ("corrected", 1)];
     let lines = lines.map(|(name, which)| Line {
         name,
-        stroke: Stroke::Plain,
         points: points(which),
     });
+    let look = Look {
+        scales: [Scale::Circle, Scale::Even],
+        strokes: &[],
+    };
     let picture = Picture {
         title: "Up rebuilt from pitch and roll of eq. 11 and 12 at a pitch of 10°: how far off",
         x: "roll (°)",
         y: "off by (°)",
-        scales: [Scale::Circle, Scale::Even],
         lines: lines.into(),
     };
     Ok(writeln!(
         text,
         "{}",
-        picture.save("printed_against_corrected")?.display()
+        picture
+            .save_with("printed_against_corrected", &look)?
+            .display()
     )?)
 }
 

@@ -23,7 +23,7 @@ use std::fmt::{self, Write as _};
 use std::process::ExitCode;
 
 use nalgebra::Vector3;
-use picture::{Line, Picture, Scale, Stroke};
+use picture::{Line, Look, Picture, Scale, Stroke};
 use vrduino::frames::axes::Axes;
 use vrduino::units::{METRES_PER_S2_PER_G as G, MagneticField, Seconds, SpecificForce};
 use vrduino::virtual_gyro::butterworth::CutOff;
@@ -39,6 +39,24 @@ const TREMOR: f64 = 1.0;
 
 /// The largest delay that is tried (samples).
 const LATEST: usize = 40;
+
+/// What is noisy thin, what may lie on another line dashed.
+const GRAVITY: [Stroke; 5] = [
+    Stroke::Fine,
+    Stroke::Plain,
+    Stroke::Plain,
+    Stroke::Plain,
+    Stroke::Dashed,
+];
+
+/// The gyro beneath, and of the two methods, which find the same, the second dashed.
+const RATES: [Stroke; 5] = [
+    Stroke::Broad,
+    Stroke::Plain,
+    Stroke::Plain,
+    Stroke::Dashed,
+    Stroke::Dashed,
+];
 
 type Extraction = GravityExtraction<f64, 5, 5>;
 
@@ -81,13 +99,14 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
         title: "Gravity extracted under shakes of 2 g, fixed cut-off (paper, figure 7)",
         x: "time (s)",
         y: "acceleration (g)",
-        scales: [Scale::Even; 2],
         lines: shaken,
     };
     writeln!(
         text,
         "{}\n",
-        picture.save("virtual_gyro_gravity")?.display()
+        picture
+            .save_with("virtual_gyro_gravity", &look(&GRAVITY))?
+            .display()
     )?;
 
     writeln!(text, "{}", motion.describe())?;
@@ -105,19 +124,14 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
         "method, cut-off      (g, rms)          (°/s, rms)    (ms)"
     )?;
     writeln!(text, "always zero                 – {of_gyro:19.1}       –")?;
-    let mut rates = vec![line("gyro", Stroke::Broad, real.iter().map(|rate| rate.y))];
+    let mut rates = vec![line("gyro", real.iter().map(|rate| rate.y))];
     let angles = Method::Angles(GimbalLock::Resolve);
     let mut least = f64::INFINITY;
-    for (name, stroke, method, extraction) in [
-        ("angles, adaptive", Stroke::Plain, angles, Extraction::new()),
-        ("angles, fixed", Stroke::Plain, angles, fixed.clone()),
-        (
-            "matrix, adaptive",
-            Stroke::Dashed,
-            Method::Matrix,
-            Extraction::new(),
-        ),
-        ("matrix, fixed", Stroke::Dashed, Method::Matrix, fixed),
+    for (name, method, extraction) in [
+        ("angles, adaptive", angles, Extraction::new()),
+        ("angles, fixed", angles, fixed.clone()),
+        ("matrix, adaptive", Method::Matrix, Extraction::new()),
+        ("matrix, fixed", Method::Matrix, fixed),
     ] {
         let made = estimates(method, extraction, &instants);
         let errors = (0..LATEST).map(|late| (late, error(&made, &real, late)));
@@ -131,7 +145,7 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
         let delay = 1000.0 * late as f64 / RATE;
         writeln!(text, "{name:17} {off:11.3} {error:19.1} {delay:7.0}")?;
         least = least.min(error);
-        rates.push(line(name, stroke, made.iter().map(|e| e.1.y)));
+        rates.push(line(name, made.iter().map(|e| e.1.y)));
     }
     let verdict = if least < of_gyro {
         "the best of them is nearer to the gyro than zero is"
@@ -146,7 +160,6 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
         ),
         x: "time (s)",
         y: "rate (°/s)",
-        scales: [Scale::Even; 2],
         lines: rates,
     };
     let drawn = motion.middle();
@@ -156,7 +169,7 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     Ok(writeln!(
         text,
         "{}",
-        picture.save("virtual_gyro")?.display()
+        picture.save_with("virtual_gyro", &look(&RATES))?.display()
     )?)
 }
 
@@ -186,27 +199,21 @@ fn figure_7(
         text,
         "{cut_off:8} {shake:15} {norm_off:15.3} {down_off:14.1}"
     )?;
-    let names = [
-        ("‖sensor‖", Stroke::Fine),
-        ("x extracted", Stroke::Plain),
-        ("y", Stroke::Plain),
-        ("z", Stroke::Plain),
-        ("‖extracted‖", Stroke::Dashed),
-    ];
+    let names = ["‖sensor‖", "x extracted", "y", "z", "‖extracted‖"];
     let lines = names.into_iter().enumerate();
-    let lines = lines
-        .map(|(column, (name, stroke))| line(name, stroke, values.iter().map(|row| row[column])));
+    let lines = lines.map(|(column, name)| line(name, values.iter().map(|row| row[column])));
     Ok(lines.collect())
 }
 
-fn line(name: &str, stroke: Stroke, values: impl Iterator<Item = f64>) -> Line<'_> {
+fn look(strokes: &[Stroke]) -> Look<'_> {
+    let scales = [Scale::Even; 2];
+    Look { scales, strokes }
+}
+
+fn line(name: &str, values: impl Iterator<Item = f64>) -> Line<'_> {
     let values = values.enumerate();
     let points = values.map(|(k, y)| [k as f64 / RATE, y]).collect();
-    Line {
-        name,
-        stroke,
-        points,
-    }
+    Line { name, points }
 }
 
 fn estimates(method: Method, extraction: Extraction, instants: &[Instant]) -> Vec<Estimate> {

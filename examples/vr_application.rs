@@ -21,7 +21,7 @@ use std::fmt::Write as _;
 use std::process::ExitCode;
 
 use nalgebra::Vector3;
-use picture::{Line, Picture, Scale, Stroke};
+use picture::{Line, Look, Picture, Scale, Stroke};
 use vrduino::frames::axes::Axes;
 use vrduino::imu::RANGES;
 use vrduino::sensor::magnetometer::{RawField, Resolution, SensitivityAdjustment, to_body};
@@ -105,22 +105,21 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     let rms = f64::sqrt(squares / f64::from(lines));
     writeln!(text, "camera off by {rms:.2}° rms over {lines} lines")?;
     let lines = LINES.into_iter().zip(drawn);
-    let lines = lines.map(|((name, stroke), points)| Line {
-        name,
-        stroke,
-        points,
-    });
+    let lines = lines.map(|((name, _), points)| Line { name, points });
+    let look = Look {
+        scales: [Scale::Even, Scale::Circle],
+        strokes: &LINES.map(|(_, stroke)| stroke),
+    };
     let picture = Picture {
         title: &format!("Six raw values in, three angles out: {}", motion.name),
         x: "time (s)",
         y: "angle (°)",
-        scales: [Scale::Even, Scale::Circle],
         lines: lines.collect(),
     };
     Ok(writeln!(
         text,
         "{}",
-        picture.save("vr_application")?.display()
+        picture.save_with("vr_application", &look)?.display()
     )?)
 }
 

@@ -1,6 +1,6 @@
 //! Lines over an axis, as an SVG file: all that the examples draw.
 
-#![allow(dead_code)] // Not every example has use for every stroke and scale.
+#![allow(dead_code)] // Not everyone who draws has use for every stroke and scale.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -26,8 +26,6 @@ pub enum Stroke {
 pub struct Line<'a> {
     /// As the legend has it; empty if it is another of the one before.
     pub name: &'a str,
-    /// How it is drawn.
-    pub stroke: Stroke,
     /// Its points; a point that is not finite interrupts the line.
     pub points: Vec<[f64; 2]>,
 }
@@ -40,10 +38,17 @@ pub struct Picture<'a> {
     pub x: &'a str,
     /// Quantity and unit of the axis upwards.
     pub y: &'a str,
-    /// How the two are laid out.
-    pub scales: [Scale; 2],
     /// What it shows.
     pub lines: Vec<Line<'a>>,
+}
+
+/// How a picture is drawn.
+#[derive(Default)]
+pub struct Look<'a> {
+    /// How its axes are laid out, that to the right and that upwards.
+    pub scales: [Scale; 2],
+    /// How its lines are drawn; plain where there is none.
+    pub strokes: &'a [Stroke],
 }
 
 const WIDTH: f64 = 760.0;
@@ -57,32 +62,46 @@ const COLOURS: [&str; 6] = [
 ];
 
 impl Picture<'_> {
-    /// Writes it to `target/pictures/NAME.svg` and returns where that is.
+    /// Writes it to `target/pictures/NAME.svg`, with plain lines over even axes, and returns where
+    /// that is.
     ///
     /// # Errors
     ///
     /// What the file system says.
     pub fn save(&self, name: &str) -> io::Result<PathBuf> {
-        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/pictures");
-        self.save_in(&folder, name)
+        self.save_with(name, &Look::default())
     }
 
-    /// The same in a folder of one's own.
+    /// The same with a look of its own.
+    ///
+    /// # Errors
+    ///
+    /// What the file system says.
+    pub fn save_with(&self, name: &str, look: &Look) -> io::Result<PathBuf> {
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/pictures");
+        self.write(&folder, name, look)
+    }
+
+    /// As [`Picture::save`], in a folder of one's own.
     ///
     /// # Errors
     ///
     /// What the file system says.
     pub fn save_in(&self, folder: &Path, name: &str) -> io::Result<PathBuf> {
+        self.write(folder, name, &Look::default())
+    }
+
+    fn write(&self, folder: &Path, name: &str, look: &Look) -> io::Result<PathBuf> {
         fs::create_dir_all(folder)?;
         let path = folder.join(format!("{name}.svg"));
-        fs::write(&path, self.svg())?;
+        fs::write(&path, self.svg(look))?;
         Ok(path)
     }
 
-    fn svg(&self) -> String {
+    fn svg(&self, look: &Look) -> String {
         let [x_axis, y_axis] = [0, 1].map(|axis| {
             let points = self.lines.iter().flat_map(|line| &line.points);
-            self.scales[axis].axis(points.map(|point| point[axis]))
+            look.scales[axis].axis(points.map(|point| point[axis]))
         });
         let right = |x: f64| LEFT + x_axis.place(x) * (WIDTH - LEFT - RIGHT);
         let up = |y: f64| HEIGHT - BOTTOM - y_axis.place(y) * (HEIGHT - TOP - BOTTOM);
@@ -113,8 +132,9 @@ impl Picture<'_> {
         }
         let mut colours = COLOURS.iter().cycle();
         let mut legend = LEFT;
-        for line in &self.lines {
-            let style = match (line.stroke, colours.clone().next().unwrap_or(&"black")) {
+        let strokes = look.strokes.iter().chain(std::iter::repeat(&Stroke::Plain));
+        for (line, stroke) in self.lines.iter().zip(strokes) {
+            let style = match (stroke, colours.clone().next().unwrap_or(&"black")) {
                 (Stroke::Broad, _) => "stroke='#bbb' stroke-width='5'".to_owned(),
                 (Stroke::Fine, colour) => {
                     format!("stroke='{colour}' stroke-width='0.8' opacity='0.6'")
@@ -124,7 +144,7 @@ impl Picture<'_> {
                     format!("stroke='{colour}' stroke-width='1.5' stroke-dasharray='6 4'")
                 }
             };
-            if line.stroke != Stroke::Broad {
+            if *stroke != Stroke::Broad {
                 colours.next();
             }
             let mut path = String::new();
@@ -134,7 +154,7 @@ impl Picture<'_> {
                     last = None;
                     continue;
                 }
-                let goes_on = last.is_some_and(|last| !self.scales[1].jumps(last, *y));
+                let goes_on = last.is_some_and(|last| !look.scales[1].jumps(last, *y));
                 let letter = if goes_on { 'L' } else { 'M' };
                 let _ = write!(path, "{letter}{:.1} {:.1}", right(*x), up(*y));
                 last = Some(*y);

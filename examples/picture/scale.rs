@@ -1,9 +1,10 @@
 //! Where a value stands on an axis, and which values are written beside it.
 
 /// How an axis is laid out.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Default, PartialEq)]
 pub enum Scale {
     /// Evenly, from the smallest value to the largest.
+    #[default]
     Even,
     /// Degrees from −180 to 180. A line that jumps from one end to the other is interrupted.
     Circle,
