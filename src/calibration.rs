@@ -1,12 +1,52 @@
+//! What the sensor reports is not what is there. Each fault is measured by a procedure, and each
+//! procedure would rather have no result than a wrong one: what it refuses, it refuses with a reason.
+//!
+//! | file | what |
+//! |---|---|
+//! | this one | is the board still? then the mean of the gyro is its bias |
+//! | [`six_positions`] | bias, scale and, if wanted, cross-axis terms of the accelerometer |
+//! | [`ellipsoid`] | hard and soft iron around the magnetometer |
+//! | [`coverage`] | which directions of the field were seen, and which are missing |
+//! | [`Correction`] | all three, as they are applied |
+//! | [`record`] | all three, as bytes to keep |
+//!
+//! # The gyro's bias
+//!
 //! The gyro reads a few tenths of a degree per second when nothing turns (b in eq. 1), and
 //! integrating that is most of a tracker's drift. So the board is watched for a second; if it
 //! provably lay still, the mean of the gyro *is* the bias. The course's firmware takes the mean
 //! without looking; hold the board in the hand at start-up and it drifts for the whole session.
+//!
+//! [`six_positions`]: crate::calibration::six_positions
+//! [`ellipsoid`]: crate::calibration::ellipsoid
+//! [`coverage`]: crate::calibration::coverage
+//! [`Correction`]: crate::calibration::Correction
+//! [`record`]: crate::calibration::record
 
 use crate::sensor::measurement::Calibration;
-use crate::sensor::{Ranges, RawSample, Sample};
+use crate::sensor::{self, Ranges, RawSample, Sample};
 use crate::units::{AngularRate, SpecificForce};
 use nalgebra::{RealField, Vector3};
+
+mod correction;
+
+pub mod coverage;
+
+pub mod ellipsoid;
+
+mod face;
+
+mod least_squares;
+
+mod moments;
+
+mod quadric;
+
+pub mod record;
+
+pub mod six_positions;
+
+pub use correction::Correction;
 
 /// Samples in one window: one second at 1 kHz, the course's number.
 pub const WINDOW: u32 = 1000;
@@ -49,6 +89,8 @@ pub struct Rest {
     pub force: SpecificForce<f32>,
     /// Variance of the force, (m/s²)² per axis: σ² of eq. 2.
     pub force_variance_m2_per_s4: Vector3<f32>,
+    /// Mean temperature of the die, °C. The bias changes with it.
+    pub temperature_celsius: f32,
 }
 
 /// What the window says after a sample.
@@ -78,6 +120,7 @@ struct Sums {
     // Gyro x, y, z, then accelerometer x, y, z. The largest possible, a thousand times 2³⁰, is
     // far from the end of an i64, and so is a thousand times that.
     axes: [AxisSums; 6],
+    temperature: i64,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -140,16 +183,18 @@ impl Stillness {
             }
             axis.squares += count * count;
         }
+        self.state.temperature += i64::from(raw.temperature);
         self.state.samples += 1;
         if self.state.samples < WINDOW {
             return Verdict::Collecting;
         }
         let axes = self.state.axes.map(AxisSums::statistics);
+        let temperature = sensor::celsius(self.state.temperature as f32 / WINDOW as f32);
         self.restart();
-        self.judge(axes)
+        self.judge(axes, temperature)
     }
 
-    fn judge(&self, axes: [AxisStatistics; 6]) -> Verdict {
+    fn judge(&self, axes: [AxisStatistics; 6], temperature_celsius: f32) -> Verdict {
         let [gx, gy, gz, ax, ay, az] = axes;
         let physical = |value: fn(AxisStatistics) -> f32| {
             let sample = self.ranges.scaled(
@@ -179,6 +224,7 @@ impl Stillness {
                 gyro_variance_dps2,
                 force,
                 force_variance_m2_per_s4,
+                temperature_celsius,
             })
         } else {
             Verdict::Moved
@@ -189,7 +235,7 @@ impl Stillness {
 /// The correction: what the gyro reads at rest is subtracted from what it reads.
 ///
 /// Only the gyro is corrected. The accelerometer's offset cannot be told from its tilt while the
-/// board lies in one position.
+/// board lies in one position; with more of them, [`six_positions`], there is a [`Correction`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroBias<T>(AngularRate<T>);
 
@@ -219,8 +265,9 @@ impl<T: RealField + Copy> GyroBias<T> {
     }
 }
 
-/// A corrected sample, body frame: what the estimators take. Only [`GyroBias::correct`] and
-/// [`Reading::calibrated`] make one, so that an uncalibrated sample cannot reach them by mistake.
+/// A corrected sample, body frame: what the estimators take. Only [`GyroBias::correct`],
+/// [`Correction::correct`] and [`Reading::calibrated`] make one, so that an uncalibrated sample cannot
+/// reach them by mistake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading<T> {
     rate: AngularRate<T>,

@@ -93,7 +93,7 @@ impl RawSample {
     /// Temperature of the die in °C: counts / 333.87 + 21 (register map, registers 65 and 66;
     /// data sheet, table 3). The counts are signed: below 21 °C they are negative.
     pub fn temperature_celsius(&self) -> f32 {
-        f32::from(self.temperature) / 333.87 + 21.0
+        celsius(f32::from(self.temperature))
     }
 
     /// True if any axis stands at the end of its range: the true value may lie beyond it.
@@ -226,6 +226,11 @@ pub struct Sample<T> {
     pub rate: AngularRate<T>,
     /// Eq. 2: gravity's reaction plus acceleration plus noise.
     pub force: SpecificForce<T>,
+}
+
+/// The die's temperature for counts that need not be whole, such as the mean of many samples.
+pub(crate) fn celsius(counts: f32) -> f32 {
+    counts / 333.87 + 21.0
 }
 
 /// The nearest whole count that 16 bits hold. Zero for what is not a number.

@@ -105,6 +105,17 @@ fn mean_and_variance_are_exact_in_any_position() {
 }
 
 #[test]
+fn the_temperature_of_the_rest_is_noted() {
+    let mut samples = window(11, |_| (BIAS, UP));
+    for (i, raw) in samples.iter_mut().enumerate() {
+        // Below 21 °C counts are negative; data sheet: 333.87 of them per °C.
+        raw.temperature = if i % 2 == 0 { -3338 } else { -3339 };
+    }
+    let celsius = expect_still(&samples).temperature_celsius;
+    assert!((celsius - 11.0).abs() < 0.001, "{celsius}");
+}
+
+#[test]
 fn a_worn_board_is_not_still() {
     // Someone trying to hold their head still: 1.5 °/s of sway at 0.8 Hz.
     for seed in 0..20 {

@@ -22,6 +22,7 @@ fn rest() -> Rest {
         gyro_variance_dps2: Vector3::new(0.01, 0.02, 0.000_004),
         force: SpecificForce::from_m_per_s2(Vector3::new(0.37, 9.0, -2.3)),
         force_variance_m2_per_s4: Vector3::new(0.001, 0.002, 0.003),
+        temperature_celsius: 25.0,
     }
 }
 
