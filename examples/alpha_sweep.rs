@@ -6,8 +6,8 @@
 //! small α follows every acceleration as if it were a change of up, α = 1 drifts. A weight means nothing
 //! without the sample period, so the time constant is printed beside it. The gyro is used as a
 //! tracker does, without the bias it shows at rest, and beside that as it is: a bias left in it asks
-//! for a shorter time. The library's 7.6 s is the best for many motions together;
-//! a single one may have its minimum elsewhere.
+//! for a shorter time. The library's 7.6 s is the best for many motions together; a single one may
+//! have its minimum elsewhere.
 
 #[path = "motion/mod.rs"]
 mod motion;

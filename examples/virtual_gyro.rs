@@ -4,9 +4,9 @@
 //! Run with `cargo run --example virtual_gyro`, on a generated motion, or with a recording:
 //! `cargo run --example virtual_gyro -- FILE` (.imub or .csv). Expect gravity to stay near 1 g under
 //! shakes of 2 g with a cut-off that is fixed, and to go with them where it adapts; and of a slow turn
-//! a rate like the gyro's but late, the same from both methods. Of quick motions, and of a
-//! device that is carried about, expect a rate that is further from the gyro's than zero is: no filter
-//! tells their acceleration from gravity.
+//! a rate like the gyro's but late, the same from both methods. Of quick motions, and of a device that
+//! is carried about, expect a rate that is further from the gyro's than zero is: no filter tells their
+//! acceleration from gravity.
 
 #[path = "motion/mod.rs"]
 mod motion;

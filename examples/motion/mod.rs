@@ -31,13 +31,18 @@ pub struct Chosen {
 
 /// The recording named on the command line, or else this generated motion.
 pub fn chosen(name: &str, generated: impl Motion + 'static) -> Outcome<Chosen> {
+    named()?.map_or_else(|| Chosen::new(name.to_owned(), Box::new(generated)), Ok)
+}
+
+/// The recording named on the command line, if there is one.
+pub fn named() -> Outcome<Option<Chosen>> {
     let Some(path) = std::env::args_os().nth(1) else {
-        return Chosen::new(name.to_owned(), Box::new(generated));
+        return Ok(None);
     };
     let path: &Path = path.as_ref();
     let name = path.file_stem().unwrap_or(path.as_os_str());
     let name = name.to_string_lossy().into_owned();
-    Chosen::new(name, motion::open(path)?)
+    Chosen::new(name, motion::open(path)?).map(Some)
 }
 
 impl Chosen {
