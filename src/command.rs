@@ -1,5 +1,5 @@
 //! Single keys without a newline, as the course's programs send them, and lines that begin with a
-//! colon, [`request`]s, whose letters press no keys.
+//! colon, requests ([`request`](crate::command::request)), whose letters press no keys.
 //!
 //! A line that begins with anything else is passed over to its end: a terminal that nobody has told
 //! otherwise echoes what the board streams, and the digits in it would press keys without end. No line
