@@ -45,7 +45,7 @@ pub enum Command {
 /// Bytes after which a line is taken for noise: more than the longest line of the stream.
 const LONGEST_LINE: u8 = 128;
 /// Longest request, without its colon.
-const LONGEST_REQUEST: usize = 64;
+const LONGEST_REQUEST: usize = 72;
 /// Calls of [`Parser::idle`] in a row after which a mistyped key is forgotten. An echo never pauses
 /// as long inside a line.
 const SILENCE: u8 = 20;

@@ -167,6 +167,11 @@ impl<T: RealField + Copy> Fusion<T> {
         self.bias.set(at_rest);
     }
 
+    /// Begins with this rate (body frame) as the gyro's bias, without believing that it was measured.
+    pub fn guess_bias(&mut self, rate: AngularRate<T>) {
+        self.bias.guess(rate);
+    }
+
     /// What the gyro reads when nothing turns, and how that is known.
     pub fn bias(&self) -> &Bias<T> {
         &self.bias

@@ -84,6 +84,9 @@ pub mod fusion;
 /// A gyro made of an accelerometer and a magnetometer.
 pub mod virtual_gyro;
 
+/// Numbers as people write them.
+pub mod decimal;
+
 /// Lines of text for the host, to the byte.
 pub mod wire;
 

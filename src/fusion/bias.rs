@@ -79,13 +79,17 @@ impl<T: RealField + Copy> Bias<T> {
         self.rad_per_s
     }
 
-    pub(super) fn set(&mut self, at_rest: AngularRate<T>) {
-        let rate = at_rest.rad_per_s();
+    pub(super) fn guess(&mut self, rate: AngularRate<T>) {
+        let rate = rate.rad_per_s();
         if rate.iter().all(|component| component.is_finite()) {
             self.rad_per_s = self.bounded(rate);
-            self.at_rest = Some(self.rad_per_s);
-            self.source = Source::Rest { samples: 0 };
         }
+    }
+
+    pub(super) fn set(&mut self, at_rest: AngularRate<T>) {
+        self.guess(at_rest);
+        self.at_rest = Some(self.rad_per_s);
+        self.source = Source::Rest { samples: 0 };
     }
 
     /// The `number`th sample of a rest (from 1): the mean of the low-passed rate.
