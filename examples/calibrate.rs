@@ -105,6 +105,12 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
         bytes.len(),
         back == record
     )?;
+    writeln!(text, "type this to the board to use and keep it:")?;
+    for (number, piece) in bytes.chunks(24).enumerate() {
+        let digits: String = piece.iter().map(|byte| format!("{byte:02x}")).collect();
+        writeln!(text, ":keep {} {digits}", 24 * number)?;
+    }
+    writeln!(text, ":keep done")?;
     let title = format!("Where the field came from: {name}");
     let look = Look {
         scales: [Scale::Circle, Scale::Even],
