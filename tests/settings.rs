@@ -114,7 +114,7 @@ fn the_verdict_on_the_bias_says_how_it_is_known() {
     bench.feed(2000, handled);
     let moving = bench.ask(":bias");
     assert!(
-        moving.ends_with("deg/s, moving, at rest 1 s ago\n"),
+        moving.ends_with("deg/s, moving, at rest 2 s ago\n"),
         "{moving}"
     );
     bench.ask(":estimator notes");
