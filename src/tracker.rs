@@ -43,6 +43,9 @@ const INFO_EVERY: u32 = 1000;
 /// Samples between reminders that the bias is not known: a minute.
 const REMIND_EVERY: u32 = 60_000;
 
+/// Samples within the range after which one at its end is worth another warning: a second.
+const CLIPPED_AGAIN: u32 = 1000;
+
 /// Samples to wait for a still window: 5 s. Someone who is already wearing the board should see a
 /// picture, even a drifting one.
 pub const STILL_DEADLINE: u32 = 5000;
@@ -104,6 +107,10 @@ struct Counts {
     fresh_this_second: u32,
     fresh_last_second: u32,
     repeated: u32,
+    /// Samples at an end of the sensor's range.
+    clipped: u32,
+    /// Samples since the last of them.
+    unclipped: u32,
 }
 
 impl Tracker {
@@ -200,7 +207,7 @@ impl Tracker {
 
     /// One sample, with what the magnetometer has measured since the one before, if it has. `emit` is
     /// given the lines they lead to: mostly none, every tenth time one to three, and once a second
-    /// up to ten.
+    /// up to eleven.
     pub fn update(
         &mut self,
         raw: &RawSample,
@@ -209,6 +216,7 @@ impl Tracker {
         emit: &mut impl FnMut(&Line),
     ) {
         self.count(raw);
+        self.tell_of_clipping(raw, emit);
         let measured = self.compass.update(field);
         if let Some(error) = measured.warning {
             emit(&wire::text(format_args!("warning: {error}")));
@@ -237,6 +245,23 @@ impl Tracker {
             self.counts.fresh_this_second = 0;
             self.compass.end_second();
         }
+    }
+
+    /// A sensor at the end of its range hides how far beyond it the truth is. It is told of when it
+    /// begins; the estimators make good what they can once it is over.
+    fn tell_of_clipping(&mut self, raw: &RawSample, emit: &mut impl FnMut(&Line)) {
+        let counts = &mut self.counts;
+        if !raw.clipped() {
+            counts.unclipped = counts.unclipped.saturating_add(1);
+            return;
+        }
+        if raw.fresh && (counts.clipped == 0 || counts.unclipped >= CLIPPED_AGAIN) {
+            emit(&wire::text(
+                "warning: the sensor is at the end of its range: turned or knocked too hard",
+            ));
+        }
+        counts.clipped = counts.clipped.saturating_add(u32::from(raw.fresh));
+        counts.unclipped = 0;
     }
 
     fn every(&self, samples: u32) -> bool {
@@ -386,6 +411,7 @@ impl Tracker {
         emit(&wire::dropped(health.dropped_lines));
         emit(&wire::repeated(self.counts.repeated));
         emit(&wire::overruns(health.overruns));
+        emit(&wire::clipped(self.counts.clipped));
         match self.compass.last() {
             Some(Ok(field)) => emit(&wire::field(field, self.compass.per_second())),
             Some(Err(error)) => emit(&wire::text(format_args!("Field: {error}"))),

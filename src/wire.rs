@@ -125,6 +125,11 @@ pub fn overruns(n: u32) -> Line {
     count("OVERRUNS", n)
 }
 
+/// `CLIPPED: n`: samples since the start in which an axis stood at the end of its range.
+pub fn clipped(n: u32) -> Line {
+    count("CLIPPED", n)
+}
+
 /// `Bias: x y z deg/s (still)`: for people, when the bias has been measured.
 pub fn bias_measured(bias: AngularRate<f32>) -> Line {
     let mut line = Line::new();

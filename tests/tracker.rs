@@ -270,12 +270,13 @@ fn mode_0_tells_once_a_second_what_the_board_knows() {
         "DROPPED: 3\n",
         "REPEATED: 10\n",
         "OVERRUNS: 4\n",
+        "CLIPPED: 0\n",
         "Field: none\n",
         "FIELDS_SKIPPED: 5\n",
     ];
-    assert_eq!(bench.texts()[..10], second);
-    assert_eq!(bench.texts()[16], "REPEATED: 20\n");
-    assert_eq!(bench.lines.len(), 20);
+    assert_eq!(bench.texts()[..11], second);
+    assert_eq!(bench.texts()[17], "REPEATED: 20\n");
+    assert_eq!(bench.lines.len(), 22);
 }
 
 #[test]
@@ -288,7 +289,7 @@ fn without_a_still_window_there_is_no_variance_to_tell() {
     let texts = bench.texts();
     assert_eq!(texts[0], "nReads/sec: 1000\n");
     assert!(texts[1].starts_with("GYR_BIAS: "), "a guess");
-    assert_eq!(texts.len(), 7);
+    assert_eq!(texts.len(), 8);
 }
 
 #[test]
@@ -338,4 +339,30 @@ fn no_sample_puts_anything_but_numbers_on_the_wire() {
             assert!((norm - 1.0).abs() < 0.002, "{line}");
         }
     }
+}
+
+#[test]
+fn the_end_of_the_range_is_told_of_when_it_begins() {
+    let mut bench = Bench::started();
+    let knock = |i| RawSample {
+        gyro: if i % 2 == 0 {
+            [i16::MAX, 0, 0]
+        } else {
+            [9000, 0, 0]
+        },
+        ..LEVEL
+    };
+    bench.feed(50, knock);
+    bench.feed(500, |_| LEVEL);
+    bench.feed(50, knock);
+    assert_eq!(
+        bench.tagged("warning"),
+        ["warning: the sensor is at the end of its range: turned or knocked too hard\n"]
+    );
+    bench.feed(1000, |_| LEVEL);
+    bench.feed(50, knock);
+    assert_eq!(bench.tagged("warning").len(), 2);
+    bench.press(b'0');
+    bench.feed(1000, |_| LEVEL);
+    assert_eq!(bench.tagged("CLIPPED"), ["CLIPPED: 75\n"]);
 }

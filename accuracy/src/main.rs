@@ -86,8 +86,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     report::variants(&mut out, &estimators, &columns)?;
     writeln!(
         out,
-        "recorded: the files' counts; registers: as ±2000 °/s, ±16 g and 0.15 µT would hold them; 1/3 rate: means of \
-         three\nsamples; +1 °/s: on every axis of the gyro, at rest at the start; cold: that, and cut 1 s before the \
+        "recorded: the files' counts; registers: as ±2000 °/s, ±16 g and 0.15 µT would hold them; 1/3 and 1/6 rate: \
+         means of\nthree and six samples; +1 °/s: on every axis of the gyro, at rest at the start; cold: that, and cut 1 s before the \
          first motion."
     )?;
     if let Some(folder) = &arguments.out {

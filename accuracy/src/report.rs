@@ -108,7 +108,7 @@ pub fn variants(
     Ok(())
 }
 
-/// The benchmark's groups: inclination with six axes, total with nine.
+/// The benchmark's table of each estimator: a row for each of its groups.
 ///
 /// # Errors
 ///
@@ -126,10 +126,16 @@ pub fn groups(
         (group.to_owned(), members)
     });
     let rows = rows.into_iter().filter(|(_, members)| !members.is_empty());
-    table(out, "group", rows.collect(), estimators, outcomes)
+    tables(
+        out,
+        "group",
+        &rows.collect::<Vec<_>>(),
+        estimators,
+        outcomes,
+    )
 }
 
-/// The same for each trial.
+/// The same with a row for each trial.
 ///
 /// # Errors
 ///
@@ -142,36 +148,48 @@ pub fn per_trial(
 ) -> io::Result<()> {
     let rows = trials.iter().enumerate();
     let rows = rows.map(|(index, trial)| (trial.name.clone(), vec![index]));
-    table(out, "trial", rows.collect(), estimators, outcomes)
+    tables(
+        out,
+        "trial",
+        &rows.collect::<Vec<_>>(),
+        estimators,
+        outcomes,
+    )
 }
 
-fn table(
+/// Without a compass the heading begins anywhere: heading and total then mean nothing before they are
+/// aligned.
+fn tables(
     out: &mut impl Write,
     heading: &str,
-    rows: Vec<(String, Vec<usize>)>,
+    rows: &[(String, Vec<usize>)],
     estimators: &[Estimator],
     outcomes: &[Vec<Outcome>],
 ) -> io::Result<()> {
-    writeln!(
-        out,
-        "\n{heading}: inclination with six axes, total with nine (°, mean RMSE)"
-    )?;
-    for (number, estimator) in estimators.iter().enumerate() {
-        let axes = if estimator.axes == Axes::Six { 6 } else { 9 };
-        writeln!(out, "  [{}] {}, {axes} axes", number + 1, estimator.name)?;
-    }
-    write!(out, "{:48}  n", "")?;
-    for number in 1..=estimators.len() {
-        write!(out, " {:>7}", format!("[{number}]"))?;
-    }
-    writeln!(out)?;
-    for (name, members) in rows {
-        write!(out, "{name:48} {:2}", members.len())?;
-        for (estimator, column) in estimators.iter().zip(outcomes) {
+    for (estimator, column) in estimators.iter().zip(outcomes) {
+        let axes = if estimator.axes == Axes::Six {
+            "six"
+        } else {
+            "nine"
+        };
+        writeln!(
+            out,
+            "\n{}, {axes} axes (°, mean RMSE)\n{heading:48}  n inclination    heading      total    aligned",
+            estimator.name
+        )?;
+        for (name, members) in rows {
             let of: Vec<Score> = members.iter().map(|&index| column[index].score).collect();
-            write!(out, " {:>7.3}", counted(estimator.axes, &Score::mean(&of)))?;
+            let mean = Score::mean(&of);
+            writeln!(
+                out,
+                "{name:48} {:2} {:>11.3} {:>10.3} {:>10.3} {:>10.3}",
+                members.len(),
+                mean.inclination,
+                mean.heading,
+                mean.total,
+                mean.aligned
+            )?;
         }
-        writeln!(out)?;
     }
     Ok(())
 }

@@ -16,6 +16,8 @@ pub enum Variant {
     Registers,
     /// The mean of three samples at a third of the rate: 95 Hz for BROAD.
     ThirdOfTheRate,
+    /// The mean of six at a sixth: 48 Hz.
+    SixthOfTheRate,
     /// A gyro that reads 1 °/s more on every axis; it still begins at rest.
     Biased,
     /// The same, cut one second before the first motion.
@@ -28,14 +30,14 @@ const BIAS: f64 = std::f64::consts::PI / 180.0;
 const MAGNETOMETER_COUNT: f64 = 0.15;
 /// s of rest that a cold start leaves.
 const COLD: f64 = 1.0;
-const BLOCK: usize = 3;
 
 impl Variant {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::AsRecorded,
         Self::Registers,
         Self::ThirdOfTheRate,
+        Self::SixthOfTheRate,
         Self::Biased,
         Self::ColdStart,
     ];
@@ -46,6 +48,7 @@ impl Variant {
             Self::AsRecorded => "recorded",
             Self::Registers => "registers",
             Self::ThirdOfTheRate => "1/3 rate",
+            Self::SixthOfTheRate => "1/6 rate",
             Self::Biased => "+1 °/s",
             Self::ColdStart => "cold",
         }
@@ -65,7 +68,8 @@ impl Variant {
                         .map(|field| (field / MAGNETOMETER_COUNT).round() * MAGNETOMETER_COUNT),
                 ),
             }),
-            Self::ThirdOfTheRate => block_means(trial),
+            Self::ThirdOfTheRate => block_means(trial, 3),
+            Self::SixthOfTheRate => block_means(trial, 6),
             Self::Biased => with_samples(trial, biased),
             Self::ColdStart => {
                 let rest = (COLD / trial.period) as usize;
@@ -101,11 +105,11 @@ fn biased(axes: &NineAxes) -> NineAxes {
 }
 
 /// Each block becomes one sample, at the time of its last.
-fn block_means(trial: &Trial) -> Trial {
+fn block_means(trial: &Trial, size: usize) -> Trial {
     let mean = |block: &[NineAxes], part: fn(&NineAxes) -> Vector3<f64>| {
-        block.iter().map(part).sum::<Vector3<f64>>() / BLOCK as f64
+        block.iter().map(part).sum::<Vector3<f64>>() / size as f64
     };
-    let samples = trial.samples.chunks_exact(BLOCK).map(|block| NineAxes {
+    let samples = trial.samples.chunks_exact(size).map(|block| NineAxes {
         sample: Sample {
             rate: AngularRate::from_rad_per_s(mean(block, |axes| axes.sample.rate.rad_per_s())),
             force: SpecificForce::from_m_per_s2(mean(block, |axes| axes.sample.force.m_per_s2())),
@@ -114,14 +118,14 @@ fn block_means(trial: &Trial) -> Trial {
     });
     Trial {
         name: trial.name.clone(),
-        period: trial.period * BLOCK as f64,
+        period: trial.period * size as f64,
         samples: samples.collect(),
-        reference: lasts(&trial.reference),
-        scored: lasts(&trial.scored),
+        reference: lasts(&trial.reference, size),
+        scored: lasts(&trial.scored, size),
     }
 }
 
-fn lasts<T: Copy>(values: &[T]) -> Vec<T> {
-    let blocks = values.chunks_exact(BLOCK);
-    blocks.map(|block| block[BLOCK - 1]).collect()
+fn lasts<T: Copy>(values: &[T], size: usize) -> Vec<T> {
+    let blocks = values.chunks_exact(size);
+    blocks.map(|block| block[size - 1]).collect()
 }

@@ -26,7 +26,7 @@ use super::breadcrumb::{self, Stage};
 use super::loader;
 use bus::Bus;
 
-/// Lines that may wait for the host: an INFO block with a verdict on the bias is ten at once. At the
+/// Lines that may wait for the host: an INFO block with a verdict on the bias is twelve at once. At the
 /// default rate these are 160 ms, so a host which comes back soon has missed nothing, and one which
 /// comes back later gets little that is old.
 const WAITING_LINES: usize = 16;
