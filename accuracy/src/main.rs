@@ -54,6 +54,9 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let trials = Trial::open_all(&arguments.recordings)?;
+    if let Some(folder) = &arguments.out {
+        report::create(folder)?;
+    }
     let estimators = estimators::all();
     let mut out = io::stdout().lock();
     writeln!(

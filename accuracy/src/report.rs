@@ -317,7 +317,12 @@ fn error_over_time(
         .collect()
 }
 
-fn create(folder: &Path) -> io::Result<()> {
+/// Makes a folder, so that it is known early whether it can be written.
+///
+/// # Errors
+///
+/// What the file system says, with the path.
+pub fn create(folder: &Path) -> io::Result<()> {
     std::fs::create_dir_all(folder).map_err(|error| with_path(folder, &error))
 }
 
