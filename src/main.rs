@@ -27,6 +27,7 @@ const RETRY_MS: u32 = 1000;
 fn main() -> ! {
     let mut board = Board::take();
     let mut tracker = Tracker::new(RANGES);
+    let _calibration = board.load_calibration();
     loop {
         let Err(fault) = track(&mut board, &mut tracker);
         board.report(fault);
