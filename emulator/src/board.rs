@@ -284,6 +284,10 @@ impl Board {
         chip.reset(cause);
         self.core_hz = chip.core_hz();
         self.flash_ratio = chip.flash_ratio();
+        // The reset has ended the command that hid it.
+        if std::mem::take(&mut self.flash_hidden) {
+            self.cpu.show_flash(Some(&chip.flash.memory.program));
+        }
         drop(chip);
         self.cpu.reset();
         self.tell_watchers(Some(Happening::Reset));
