@@ -1,50 +1,55 @@
 //! What does the accelerometer alone know of an orientation? Figure 7 of the course notes (sections
 //! 5.2 and 5.3): the accelerometer only on the left, the complementary filter on the right.
 //!
-//! Run with `cargo run --example accelerometer_only`, or behind it `-- RECORDING.imub`. Expect the
-//! accelerometer alone to be off in heading by whatever the head has turned, and to take each of its
-//! accelerations for a tilt; the filter is off by little in both.
+//! Run with `cargo run --example accelerometer_only`, on a generated head, or with a recording:
+//! `cargo run --example accelerometer_only -- FILE` (.imub or .csv). Expect the accelerometer alone to
+//! be off in heading by whatever the head has turned, and to take each of its accelerations for a
+//! tilt; the filter is off by little in both.
 
+#[path = "motion/mod.rs"]
+mod motion;
+
+#[path = "picture/mod.rs"]
+mod picture;
+
+#[path = "program/mod.rs"]
+mod program;
+
+use std::error::Error;
+use std::fmt::Write as _;
 use std::process::ExitCode;
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use vrduino::calibration::GyroBias;
+use nalgebra::{UnitQuaternion, Vector3};
+use picture::{Line, Picture};
 use vrduino::orientation::complementary::Complementary;
 use vrduino::orientation::{DEFAULT_TIME_CONSTANT, TimeConstant, accelerometer};
 use vrduino::sensor::Sample;
 use vrduino::units::{AngularRate, Seconds, SpecificForce};
-use vrduino_emulator::motion::{self, Head, Imperfect, Imperfections, Motion, MotionError};
-
-#[path = "picture/mod.rs"]
-mod picture;
-use picture::{Line, Picture};
+use vrduino_emulator::motion::{Head, Imperfect, Imperfections};
 
 const PERIOD: f64 = 0.005;
-/// Samples at the beginning that are taken to be at rest, for the gyro's bias: two seconds.
+/// Samples at the beginning that the bias is taken from: two seconds.
 const REST: u32 = 400;
 const NAMES: [&str; 4] = [
-    "alone: heading",
+    "accelerometer alone: heading",
     "alone: tilt",
     "fused: heading",
     "fused: tilt",
 ];
 
 fn main() -> ExitCode {
-    if let Err(error) = run() {
-        eprintln!("error: {error}");
-        return ExitCode::FAILURE;
-    }
-    ExitCode::SUCCESS
+    program::run(include_str!("accelerometer_only.rs"), 1, run)
 }
 
-fn run() -> Result<(), Box<dyn std::error::Error>> {
-    let motion = motion()?;
-    println!("{}", motion.describe());
+fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
+    let lever_arm = Head::ON_THE_NECK;
+    let head = Imperfect::new(Box::new(Head { lever_arm }), Imperfections::default());
+    let motion = motion::chosen("a generated head", head)?
+        .lasting(f64::from(REST + 1) * PERIOD)?
+        .with_truth()?;
+    writeln!(text, "{}", motion.describe())?;
     let at = |index: u32| motion.at(f64::from(index) * PERIOD);
-    let count = (motion.duration().unwrap_or(60.0) / PERIOD) as u32;
-    let rates = (0..REST).map(|index| Vector3::from(at(index).rate));
-    let mean = rates.sum::<Vector3<f64>>() / f64::from(REST);
-    let bias = GyroBias::new(AngularRate::from_rad_per_s(mean));
+    let bias = motion.bias();
 
     let constant = TimeConstant::new(Seconds(DEFAULT_TIME_CONSTANT.time().0.into()));
     let mut filter = Complementary::new(constant, Seconds(PERIOD));
@@ -52,7 +57,7 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
     // Neither knows where north is: both are told so at the first true orientation.
     let mut north = None;
     let mut errors: [Vec<[f64; 2]>; 4] = Default::default();
-    for index in REST..count {
+    for index in REST..(motion.seconds / PERIOD) as u32 {
         let instant = at(index);
         let reading = bias.correct(Sample {
             rate: AngularRate::from_rad_per_s(instant.rate.into()),
@@ -60,10 +65,9 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
         });
         let fused = filter.update(&reading);
         let alone = accelerometer::orientation(reading.force());
-        let (Some([w, x, y, z]), Some(alone)) = (instant.truth, alone) else {
+        let (Some(truth), Some(alone)) = (motion::truth(&instant), alone) else {
             continue;
         };
-        let truth = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
         let north = *north.get_or_insert(turn_about_up(truth * fused.inverse()));
         for (which, found) in [alone, fused].into_iter().enumerate() {
             let error = truth * (north * found).inverse();
@@ -75,37 +79,37 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     if errors[0].is_empty() {
-        return Err("the motion is too short or has no true orientation to compare with".into());
+        return Err("there is no true orientation after the first two seconds".into());
     }
 
-    println!("error in degrees       rms   largest");
+    writeln!(
+        text,
+        "{:28} {:>9} {:>9}",
+        "error in degrees", "rms", "largest"
+    )?;
     for (name, points) in NAMES.iter().zip(&errors) {
         let sum: f64 = points.iter().map(|[_, error]| error * error).sum();
         let largest = points.iter().fold(0.0_f64, |most, [_, e]| most.max(*e));
         let rms = (sum / points.len() as f64).sqrt();
-        println!("{name:16} {rms:9.2} {largest:9.2}");
+        writeln!(text, "{name:28} {rms:9.2} {largest:9.2}")?;
     }
     // Ten points a second are enough to look at.
     let thinned = errors.map(|points| points.into_iter().step_by(20).collect());
     let lines = NAMES.into_iter().zip(thinned);
     let picture = Picture {
-        title: "Accelerometer alone, and fused with the gyro",
+        title: &format!(
+            "Accelerometer alone, and fused with the gyro: {}",
+            motion.name
+        ),
         x: "time (s)",
         y: "error (°)",
         lines: lines.map(|(name, points)| Line { name, points }).collect(),
     };
-    println!("{}", picture.save("accelerometer_only")?.display());
-    Ok(())
-}
-
-/// The recording named on the command line, or else a head on its neck.
-fn motion() -> Result<Box<dyn Motion>, MotionError> {
-    if let Some(path) = std::env::args_os().nth(1) {
-        return motion::open(path.as_ref());
-    }
-    let lever_arm = Head::ON_THE_NECK;
-    let head = Imperfect::new(Box::new(Head { lever_arm }), Imperfections::default());
-    Ok(Box::new(head))
+    Ok(writeln!(
+        text,
+        "{}",
+        picture.save("accelerometer_only")?.display()
+    )?)
 }
 
 /// The part of a turn that is about the vertical.

@@ -1,14 +1,27 @@
 //! What is wrong with this sensor? Every calibration on one recording, or the reason why it has none.
 //!
-//! Run with `cargo run --release --example calibrate -- RECORDING.imub`. Without a recording a made-up
-//! sensor with known faults is laid on its six faces and then turned every way: expect its faults
-//! back. A recording of somebody walking about has no six positions, so expect that to be refused.
+//! Run with `cargo run --release --example calibrate`, or with a recording: `cargo run --release
+//! --example calibrate -- FILE` (.imub or .csv). Without one a made-up sensor with known faults is laid
+//! on its six faces and then turned every way: expect its faults back. A recording of somebody walking
+//! about has no six positions, so expect that to be refused.
+
+#[path = "motion/mod.rs"]
+mod motion;
+
+#[path = "picture/mod.rs"]
+mod picture;
+
+#[path = "program/mod.rs"]
+mod program;
 
 use std::error::Error;
 use std::f64::consts::TAU;
+use std::fmt::{self, Write as _};
 use std::process::ExitCode;
 
+use motion::Chosen;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use picture::{Line, Look, Picture, Scale};
 use vrduino::calibration::coverage::{DIRECTIONS, direction};
 use vrduino::calibration::ellipsoid::{self, EllipsoidFit, Magnetometer};
 use vrduino::calibration::record::{Gyro, Record};
@@ -19,11 +32,6 @@ use vrduino::sensor::measurement::{MeasurementModel, specific_force};
 use vrduino::sensor::simulation::{Gaussian, SimulatedImu, SimulatedTriad};
 use vrduino::sensor::{RawSample, Sample};
 use vrduino::units::{AngularRate, MagneticField, SpecificForce};
-use vrduino_emulator::motion;
-
-#[path = "picture/mod.rs"]
-mod picture;
-use picture::{Line, Picture};
 
 /// Samples a second, and in how many of them the magnetometer has something new.
 const RATE: f64 = 1000.0;
@@ -36,24 +44,20 @@ struct Heard {
 }
 
 fn main() -> ExitCode {
-    if let Err(error) = run() {
-        eprintln!("error: {error}");
-        return ExitCode::FAILURE;
-    }
-    ExitCode::SUCCESS
+    program::run(include_str!("calibrate.rs"), 1, run)
 }
 
-fn run() -> Result<(), Box<dyn Error>> {
-    let heard = match std::env::args_os().nth(1) {
-        Some(path) => recorded(path.as_ref())?,
-        None => made_up(),
+fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
+    let (name, heard) = match motion::named()? {
+        Some(motion) => (motion.name.clone(), recorded(text, &motion)?),
+        None => ("a made-up sensor".to_owned(), made_up(text)?),
     };
     let fields: Vec<_> = heard.iter().filter_map(|heard| heard.field).collect();
     let temperature = heard
         .last()
         .map_or(0.0, |heard| heard.raw.temperature_celsius());
     let mut record = Record {
-        gyro: gyro(&heard).map(Gyro::from),
+        gyro: gyro(text, &heard)?.map(Gyro::from),
         ..Record::default()
     };
     let mut positions = SixPositions::<f32>::new(RANGES);
@@ -62,56 +66,83 @@ fn run() -> Result<(), Box<dyn Error>> {
         .filter_map(|heard| positions.push(&heard.raw))
         .collect();
     let count = |what: fn(&Step<f32>) -> bool| steps.iter().filter(|step| what(step)).count();
-    println!(
+    writeln!(
+        text,
         "accelerometer    {} windows on a face, {} tilted, {} moved",
         count(|step| matches!(step, Step::Taken { .. })),
         count(|step| matches!(step, Step::Tilted { .. })),
         count(|step| matches!(step, Step::Moved)),
-    );
+    )?;
     match positions.result(CrossAxis::Ignore) {
         Ok(result) => {
-            row("  bias", result.bias.m_per_s2(), "m/s²");
-            row("  scale", result.matrix.diagonal(), "");
+            row(text, "  bias", result.bias.m_per_s2(), "m/s²")?;
+            row(text, "  scale", result.matrix.diagonal(), "")?;
             let (residual, placing) = (result.residual, result.placing.degrees());
-            println!("  left over      {residual:.4} m/s², placed {placing:.1}° off");
+            writeln!(
+                text,
+                "  left over      {residual:.4} m/s², placed {placing:.1}° off"
+            )?;
             record.accelerometer = Some(result);
         }
-        Err(refusal) => println!("  refused        {refusal}"),
+        Err(refusal) => writeln!(text, "  refused        {refusal}")?,
     }
-    println!("magnetometer     {} fields", fields.len());
+    writeln!(text, "magnetometer     {} fields", fields.len())?;
     let mut fit = EllipsoidFit::new();
     for field in &fields {
         fit.push(Ok(*field));
     }
     let result = fit.result(temperature);
     match &result {
-        Ok(result) => print_magnetometer(result),
-        Err(refusal) => println!("  refused        {refusal}"),
+        Ok(result) => magnetometer(text, result)?,
+        Err(refusal) => writeln!(text, "  refused        {refusal}")?,
     }
     record.magnetometer = result.as_ref().ok().copied();
     let bytes = record.to_bytes();
     let back = Record::from_bytes(&bytes)?;
-    println!(
+    writeln!(
+        text,
         "kept             {} bytes, read back alike: {}",
         bytes.len(),
         back == record
-    );
-    println!("{}", picture(&fields, &result).save("calibrate")?.display());
+    )?;
+    writeln!(text, "type this to the board to use and keep it:")?;
+    for (number, piece) in bytes.chunks(24).enumerate() {
+        let digits: String = piece.iter().map(|byte| format!("{byte:02x}")).collect();
+        writeln!(text, ":keep {} {digits}", 24 * number)?;
+    }
+    writeln!(text, ":keep done")?;
+    let title = format!("Where the field came from: {name}");
+    let look = Look {
+        scales: [Scale::Circle, Scale::Even],
+        strokes: &[],
+    };
+    writeln!(
+        text,
+        "{}",
+        picture(&title, &fields, &result)
+            .save_with("calibrate", &look)?
+            .display()
+    )?;
     Ok(())
 }
 
-fn row(name: &str, v: Vector3<f32>, unit: &str) {
-    println!("{name:16} {:9.4} {:9.4} {:9.4}  {unit}", v.x, v.y, v.z);
+fn row(text: &mut String, name: &str, v: Vector3<f32>, unit: &str) -> fmt::Result {
+    writeln!(
+        text,
+        "{name:16} {:9.4} {:9.4} {:9.4}  {unit}",
+        v.x, v.y, v.z
+    )
 }
 
-fn rows(name: &str, matrix: &Matrix3<f32>) {
+fn rows(text: &mut String, name: &str, matrix: &Matrix3<f32>) -> fmt::Result {
     for (name, column) in [name, "", ""].iter().zip(matrix.column_iter()) {
-        row(name, column.into(), "");
+        row(text, name, column.into(), "")?;
     }
+    Ok(())
 }
 
 /// The first second in which the board lay still.
-fn gyro(heard: &[Heard]) -> Option<Rest> {
+fn gyro(text: &mut String, heard: &[Heard]) -> Result<Option<Rest>, fmt::Error> {
     let mut stillness = Stillness::new(RANGES);
     let verdicts = heard.iter().map(|heard| stillness.push(&heard.raw));
     let rests: Vec<_> = verdicts
@@ -120,37 +151,43 @@ fn gyro(heard: &[Heard]) -> Option<Rest> {
             Verdict::Collecting | Verdict::Moved => None,
         })
         .collect();
-    println!("gyro             {} still windows", rests.len());
+    writeln!(text, "gyro             {} still windows", rests.len())?;
     let first = rests.first().copied();
     match first {
         Some(rest) => {
-            row("  bias", rest.gyro_bias.dps(), "°/s");
-            println!("  at             {:.1} °C", rest.temperature_celsius);
+            row(text, "  bias", rest.gyro_bias.dps(), "°/s")?;
+            writeln!(text, "  at             {:.1} °C", rest.temperature_celsius)?;
         }
-        None => println!("  refused        never still: lay the board down and take the hand away"),
+        None => writeln!(
+            text,
+            "  refused        never still: lay the board down and take the hand away"
+        )?,
     }
-    first
+    Ok(first)
 }
 
-fn print_magnetometer(result: &Magnetometer<f32>) {
-    row("  hard iron", result.hard_iron.microtesla(), "µT");
-    rows("  soft iron", &result.soft_iron);
-    println!(
+fn magnetometer(text: &mut String, result: &Magnetometer<f32>) -> fmt::Result {
+    row(text, "  hard iron", result.hard_iron.microtesla(), "µT")?;
+    rows(text, "  soft iron", &result.soft_iron)?;
+    writeln!(
+        text,
         "  field          {:.2} µT, varies by {:.2} %",
         result.strength_microtesla, result.error_percent
-    );
-    println!(
+    )?;
+    writeln!(
+        text,
         "  seen           {:.0} % of all directions, largest hole {:.0}°",
         result.coverage * 100.0,
         result.largest_hole.degrees()
-    );
+    )
 }
 
 /// Directions of the field about the body's y axis, and those of the map near which there is none.
-fn picture(
+fn picture<'a>(
+    title: &'a str,
     fields: &[MagneticField<f32>],
     result: &Result<Magnetometer<f32>, ellipsoid::Refusal<f32>>,
-) -> Picture<'static> {
+) -> Picture<'a> {
     let correct = |field: &MagneticField<f32>| match result {
         Ok(result) => result.calibration().corrected(*field).microtesla(),
         Err(_) => field.microtesla(),
@@ -165,7 +202,7 @@ fn picture(
         points: directions.iter().flat_map(|v| cross(v, size)).collect(),
     };
     Picture {
-        title: "Where the field came from",
+        title,
         x: "direction about y, from z towards x (°)",
         y: "above the x-z plane (°)",
         lines: vec![
@@ -190,11 +227,10 @@ fn cross(v: &Vector3<f32>, size: f64) -> [[f64; 2]; 6] {
 }
 
 /// As the board would hear it: 1 kHz, counts at ±2000 °/s and ±16 g, a field every 10 ms.
-fn recorded(path: &std::path::Path) -> Result<Vec<Heard>, motion::MotionError> {
-    let motion = motion::open(path)?;
-    println!("{}", motion.describe());
-    println!("a recording has no temperature: 21 °C stands for it");
-    let count = (motion.duration().unwrap_or(60.0) * RATE) as usize;
+fn recorded(text: &mut String, motion: &Chosen) -> Result<Vec<Heard>, fmt::Error> {
+    writeln!(text, "{}", motion.describe())?;
+    writeln!(text, "a recording has no temperature: 21 °C stands for it")?;
+    let count = (motion.seconds * RATE) as usize;
     let heard = (0..count).map(|k| {
         let instant = motion.at(k as f64 / RATE);
         let sample = Sample {
@@ -211,20 +247,20 @@ fn recorded(path: &std::path::Path) -> Result<Vec<Heard>, motion::MotionError> {
 }
 
 /// A sensor with the faults that are printed, 3 s on each face and then turned for 90 s.
-fn made_up() -> Vec<Heard> {
+fn made_up(text: &mut String) -> Result<Vec<Heard>, fmt::Error> {
     let gyro_bias = AngularRate::from_dps(Vector3::new(1.2, -0.7, 0.4));
     let bias = SpecificForce::from_m_per_s2(Vector3::new(0.35, -0.22, 0.6));
     let reads = Vector3::<f64>::new(1.02, 0.985, 1.01);
     let hard_iron = Vector3::<f64>::new(31.0, -84.0, 12.5);
     let iron = Matrix3::<f64>::new(1.05, 0.02, -0.03, 0.02, 0.96, 0.01, -0.03, 0.01, 1.0);
-    println!("a made-up sensor with these faults:");
-    row("  gyro bias", gyro_bias.dps().cast(), "°/s");
-    row("  force bias", bias.m_per_s2().cast(), "m/s²");
-    row("  force scale", reads.map(f64::recip).cast(), "");
-    row("  hard iron", hard_iron.cast(), "µT");
+    writeln!(text, "a made-up sensor with these faults:")?;
+    row(text, "  gyro bias", gyro_bias.dps().cast(), "°/s")?;
+    row(text, "  force bias", bias.m_per_s2().cast(), "m/s²")?;
+    row(text, "  force scale", reads.map(f64::recip).cast(), "")?;
+    row(text, "  hard iron", hard_iron.cast(), "µT")?;
     let soft_iron = iron.try_inverse().unwrap_or_default() * iron.determinant().cbrt();
-    rows("  soft iron", &soft_iron.cast());
-    println!();
+    rows(text, "  soft iron", &soft_iron.cast())?;
+    writeln!(text)?;
     let gyro = SimulatedTriad::new(
         MeasurementModel::aligned(gyro_bias),
         AngularRate::from_dps(Vector3::repeat(0.14)),
@@ -259,7 +295,7 @@ fn made_up() -> Vec<Heard> {
             }),
         }
     });
-    heard.collect()
+    Ok(heard.collect())
 }
 
 /// Body to world, and the rate in the body (rad/s).

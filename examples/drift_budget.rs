@@ -8,9 +8,15 @@
 #[path = "picture/mod.rs"]
 mod picture;
 
+#[path = "program/mod.rs"]
+mod program;
+
 use nalgebra::Vector3;
 use picture::{Line, Picture};
+use std::error::Error;
 use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::process::ExitCode;
 use vrduino::calibration::{GyroBias, Reading};
 use vrduino::orientation::TimeConstant;
 use vrduino::orientation::flatland::error::{gyro_drift, integration_error};
@@ -53,8 +59,15 @@ fn errors(step: f64, bias_dps: f64) -> Vec<[f64; 2]> {
         .collect()
 }
 
-fn main() -> std::io::Result<()> {
-    println!("   Δt       bias   worst error   error at end   predicted");
+fn main() -> ExitCode {
+    program::run(include_str!("drift_budget.rs"), 0, run)
+}
+
+fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
+    writeln!(
+        text,
+        "   Δt       bias   worst error   error at end   predicted"
+    )?;
     for step in [0.02, 0.01, 0.001] {
         for bias_dps in [0.0, 0.01, 0.1, 1.0] {
             let errors = errors(step, bias_dps);
@@ -62,12 +75,13 @@ fn main() -> std::io::Result<()> {
             let last = errors.last().map(|point| point[1]);
             let predicted = gyro_drift(bias(bias_dps), Seconds(SECONDS)).degrees()
                 + integration_error(swing(0.0).1, swing(SECONDS).1, Seconds(step)).degrees();
-            println!(
+            writeln!(
+                text,
                 "{:3} ms  {bias_dps:5} °/s  {:11.3}°  {:12.3}°  {predicted:9.3}°",
                 step * 1000.0,
                 worst.unwrap_or(f64::NAN),
                 last.unwrap_or(f64::NAN)
-            );
+            )?;
         }
     }
     let line = |name, step, bias_dps| Line {
@@ -78,7 +92,7 @@ fn main() -> std::io::Result<()> {
             .collect(),
     };
     let picture = Picture {
-        title: "Drift of the gyro: integration against bias",
+        title: "Drift of the gyro, integration against bias: a swing of 60° to and fro each second",
         x: "time (s)",
         y: "error (°)",
         lines: vec![
@@ -88,6 +102,9 @@ fn main() -> std::io::Result<()> {
             line("1 ms, 0.1 °/s", 0.001, 0.1),
         ],
     };
-    println!("{}", picture.save("drift_budget")?.display());
-    Ok(())
+    Ok(writeln!(
+        text,
+        "{}",
+        picture.save("drift_budget")?.display()
+    )?)
 }

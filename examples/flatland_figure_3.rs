@@ -8,8 +8,14 @@
 #[path = "picture/mod.rs"]
 mod picture;
 
+#[path = "program/mod.rs"]
+mod program;
+
 use nalgebra::Vector3;
-use picture::{Line, Picture};
+use picture::{Line, Look, Picture, Scale, Stroke};
+use std::error::Error;
+use std::fmt::Write as _;
+use std::process::ExitCode;
 use vrduino::calibration::GyroBias;
 use vrduino::imu::RANGES;
 use vrduino::orientation::TimeConstant;
@@ -28,6 +34,14 @@ const BIAS_DPS: f64 = 0.3;
 const GYRO_NOISE_DPS: f64 = 0.1;
 const ACCELEROMETER_NOISE: f64 = 0.5;
 
+/// The truth beneath, what is noisy above it, and on top what is made of both.
+const LINES: [(&str, Stroke); 4] = [
+    ("truth", Stroke::Broad),
+    ("accelerometer", Stroke::Fine),
+    ("gyro", Stroke::Plain),
+    ("fused", Stroke::Plain),
+];
+
 /// Roll (rad) and its rate (rad/s): a slow swing to 30°.
 fn truth(t: f64) -> (f64, f64) {
     let (amplitude, frequency) = (30_f64.to_radians(), 0.5);
@@ -35,7 +49,11 @@ fn truth(t: f64) -> (f64, f64) {
     (amplitude * sin, amplitude * frequency * cos)
 }
 
-fn main() -> std::io::Result<()> {
+fn main() -> ExitCode {
+    program::run(include_str!("flatland_figure_3.rs"), 0, run)
+}
+
+fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
     let all = |value| Vector3::repeat(value);
     let mut imu = SimulatedImu::new(
         SimulatedTriad::new(
@@ -51,7 +69,7 @@ fn main() -> std::io::Result<()> {
     );
     let period = Seconds(PERIOD);
     let mut flat = Flatland::new(TimeConstant::from_gyro_weight(ALPHA, period), period);
-    let mut lines = ["gyro", "accelerometer", "fused", "truth"].map(|name| Line {
+    let mut lines = LINES.map(|(name, _)| Line {
         name,
         points: Vec::new(),
     });
@@ -66,7 +84,7 @@ fn main() -> std::io::Result<()> {
             SpecificForce::from_m_per_s2(up),
         );
         let found = flat.update(&GyroBias::zero().correct(RANGES.sample(&raw)));
-        let angles = [found.gyro, found.accelerometer, found.fused];
+        let angles = [found.accelerometer, found.gyro, found.fused];
         for (i, angle) in angles.into_iter().enumerate() {
             let error = shortest_turn(Angle::from_rad(roll), angle).degrees();
             squares[i] += error * error / f64::from(STEPS);
@@ -74,26 +92,39 @@ fn main() -> std::io::Result<()> {
                 means[i] += error / f64::from(LAST);
             }
         }
-        let drawn = angles.map(Angle::degrees).into_iter();
-        for (line, angle) in lines.iter_mut().zip(drawn.chain([roll.to_degrees()])) {
+        let drawn = [roll.to_degrees()].into_iter();
+        let drawn = drawn.chain(angles.map(Angle::degrees));
+        for (line, angle) in lines.iter_mut().zip(drawn) {
             line.points.push([t, angle]);
         }
     }
-    println!(
+    writeln!(
+        text,
         "α = {ALPHA}, {} s at {PERIOD} s a sample, {BIAS_DPS} °/s of bias",
         f64::from(STEPS) * PERIOD
-    );
+    )?;
     let last = f64::from(LAST) * PERIOD;
-    println!("{:13} {:>10}   mean of the last {last} s", "", "rms error");
-    for (line, (square, mean)) in lines.iter().zip(squares.iter().zip(means)) {
-        println!("{:13} {:9.2}° {mean:11.2}°", line.name, square.sqrt());
+    writeln!(
+        text,
+        "{:13} {:>10}   mean of the last {last} s",
+        "", "rms error"
+    )?;
+    for ((name, _), (square, mean)) in LINES.iter().skip(1).zip(squares.iter().zip(means)) {
+        writeln!(text, "{name:13} {:9.2}° {mean:11.2}°", square.sqrt())?;
     }
+    let look = Look {
+        scales: [Scale::Even; 2],
+        strokes: &LINES.map(|(_, stroke)| stroke),
+    };
     let picture = Picture {
-        title: "Roll in flatland (course notes, figure 3)",
+        title: "Roll in flatland, by simulated sensors (course notes, figure 3)",
         x: "time (s)",
         y: "roll (°)",
         lines: lines.into(),
     };
-    println!("{}", picture.save("flatland_figure_3")?.display());
-    Ok(())
+    Ok(writeln!(
+        text,
+        "{}",
+        picture.save_with("flatland_figure_3", &look)?.display()
+    )?)
 }

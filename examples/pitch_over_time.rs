@@ -2,16 +2,26 @@
 //! gyro, by the accelerometer and by its complementary filter, beside the notes' quaternion filter
 //! (000, eq. 24) and the truth.
 //!
-//! Run with `cargo run --example pitch_over_time -- RECORDING.imub`; without a recording a generated nod
-//! is used. There, where one axis turns, expect the gyro to drift, the accelerometer to be noisy and both
-//! filters to be better. Where axes turn together, the lecture's can be worse than the accelerometer.
+//! Run with `cargo run --example pitch_over_time`, on a generated nod, or with a recording:
+//! `cargo run --example pitch_over_time -- FILE` (.imub or .csv). Of the nod, where one axis turns,
+//! expect what the lecture says: the gyro drifts, the accelerometer is noisy, and both filters are far
+//! better than either. Where axes turn together, the lecture's can be worse than the accelerometer.
+
+#[path = "motion/mod.rs"]
+mod motion;
 
 #[path = "picture/mod.rs"]
 mod picture;
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use picture::{Line, Picture};
+#[path = "program/mod.rs"]
+mod program;
+
+use motion::Chosen;
+use nalgebra::{UnitQuaternion, Vector3};
+use picture::{Line, Look, Picture, Scale, Stroke};
 use std::error::Error;
+use std::fmt::Write as _;
+use std::process::ExitCode;
 use vrduino::calibration::GyroBias;
 use vrduino::orientation::angles::pitch_half_circle;
 use vrduino::orientation::complementary::Complementary;
@@ -20,16 +30,23 @@ use vrduino::orientation::euler::lecture::{LectureComplementary, LectureDeadReck
 use vrduino::orientation::flatland::shortest_turn;
 use vrduino::orientation::{TimeConstant, accelerometer};
 use vrduino::sensor::Sample;
-use vrduino::units::{AngularRate, Seconds, SpecificForce};
-use vrduino_emulator::motion::{self, Imperfect, Imperfections, Motion, Turns};
+use vrduino::units::{Angle, AngularRate, Seconds, SpecificForce};
+use vrduino_emulator::motion::{Imperfect, Imperfections, Turns};
 
 const PERIOD: Seconds<f64> = Seconds(0.002);
 const TIME_CONSTANT: Seconds<f64> = Seconds(1.0);
 const LONGEST: f64 = 60.0; // of the motion (s)
+/// The truth beneath, what is noisy above it, and the filters on top.
+const LINES: [(&str, Stroke); 5] = [
+    ("truth", Stroke::Broad),
+    ("accelerometer", Stroke::Fine),
+    ("gyro", Stroke::Plain),
+    ("lecture's filter", Stroke::Plain),
+    ("quaternion filter", Stroke::Dashed),
+];
 
 /// Pitch alone, to and fro, felt by a shaken sensor.
-fn nods() -> Box<dyn Motion> {
-    println!("no recording named, so a generated motion:");
+fn nods() -> Imperfect {
     let turns = (0..10).fold(Turns::new(1.0, 0.5), |turns, _| {
         let x = [1.0, 0.0, 0.0];
         turns.turn(x, 40.0, 1.0).turn(x, -40.0, 1.0)
@@ -38,27 +55,38 @@ fn nods() -> Box<dyn Motion> {
         accel_noise: 1.0,
         ..Imperfections::default()
     };
-    Box::new(Imperfect::new(Box::new(turns), shaken))
+    Imperfect::new(Box::new(turns), shaken)
 }
 
-fn run() -> Result<(), Box<dyn Error>> {
-    let motion = match std::env::args_os().nth(1) {
-        Some(path) => motion::open(path.as_ref())?,
-        None => nods(),
-    };
-    println!("{}", motion.describe());
-    // A recorded sensor may lie in any way: level is how it lies at first.
-    let at_first = SpecificForce::from_m_per_s2(Vector3::from(motion.at(0.0).force));
-    let level = accelerometer::orientation(at_first).ok_or("the motion begins in free fall")?;
+/// From the body's axes to those that are level at first: a recorded sensor may lie in any way. By
+/// the truth where it is known, for one sample of a shaken sensor is degrees off; else by the mean
+/// force of the first second, in which motions rest.
+fn level(motion: &Chosen) -> Option<UnitQuaternion<f64>> {
+    let instants = (0..500).map(|step| motion.at(f64::from(step) * PERIOD.0));
+    let mean: Vector3<f64> = instants.map(|instant| Vector3::from(instant.force)).sum();
+    let truth = motion::truth(&motion.at(0.0));
+    let up = truth.map_or(mean, |truth| truth.inverse() * Vector3::y());
+    accelerometer::orientation(SpecificForce::from_m_per_s2(up))
+}
+
+fn main() -> ExitCode {
+    program::run(include_str!("pitch_over_time.rs"), 1, run)
+}
+
+fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
+    let motion = motion::chosen("a generated nod", nods())?
+        .lasting(1.0)?
+        .with_truth()?;
+    let level = level(&motion).ok_or("the motion begins in free fall: cut that off")?;
     let mut gyro = LectureDeadReckoning::new(PERIOD);
     let mut fused = LectureComplementary::new(TimeConstant::new(TIME_CONSTANT), PERIOD);
     let mut notes = Complementary::new(TimeConstant::new(TIME_CONSTANT), PERIOD);
-    let mut lines = ["gyro", "accelerometer", "fused", "quaternion", "truth"].map(|name| Line {
+    let mut lines = LINES.map(|(name, _)| Line {
         name,
         points: Vec::new(),
     });
     let (mut squares, mut compared) = ([0.0; 4], 0.0);
-    let seconds = motion.duration().unwrap_or(LONGEST).min(LONGEST);
+    let seconds = motion.seconds.min(LONGEST);
     for step in 0..(seconds / PERIOD.0) as u32 {
         let t = f64::from(step) * PERIOD.0;
         let now = motion.at(t);
@@ -67,15 +95,12 @@ fn run() -> Result<(), Box<dyn Error>> {
             force: SpecificForce::from_m_per_s2(level * Vector3::from(now.force)),
         });
         let pitches = [
-            gyro.update(&reading).pitch,
             pitch_half_circle(reading.force()),
+            gyro.update(&reading).pitch,
             fused.update(&reading).pitch,
             EulerAngles::of(notes.update(&reading)).pitch,
         ];
-        let truth = now.truth.map(|[w, x, y, z]| {
-            let body = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
-            EulerAngles::of(body * level.inverse()).pitch
-        });
+        let truth = motion::truth(&now).map(|body| EulerAngles::of(body * level.inverse()).pitch);
         if let Some(truth) = truth {
             compared += 1.0;
             for (sum, pitch) in squares.iter_mut().zip(pitches) {
@@ -83,37 +108,36 @@ fn run() -> Result<(), Box<dyn Error>> {
             }
         }
         if step % 10 == 0 {
-            let truth = truth.map_or(f64::NAN, |pitch| pitch.degrees());
-            let drawn = pitches.map(|pitch| pitch.degrees()).into_iter();
-            for (line, pitch) in lines.iter_mut().zip(drawn.chain([truth])) {
+            let truth = truth.map_or(f64::NAN, Angle::degrees);
+            let drawn = [truth].into_iter().chain(pitches.map(Angle::degrees));
+            for (line, pitch) in lines.iter_mut().zip(drawn) {
                 line.points.push([t, pitch]);
             }
         }
     }
     if compared == 0.0 {
-        return Err("the motion has no truth to compare with: give one that has".into());
+        return Err(format!("there is no true orientation in the first {seconds} s").into());
     }
-    println!(
-        "its first {seconds:.1} s; time constant {} s",
-        TIME_CONSTANT.0
-    );
-    println!("{:13} {:>10}", "", "rms error");
-    for (line, square) in lines.iter().zip(squares) {
-        println!("{:13} {:9.2}°", line.name, (square / compared).sqrt());
+    writeln!(text, "{}", motion.describe())?;
+    let constant = TIME_CONSTANT.0;
+    writeln!(text, "its first {seconds:.1} s; time constant {constant} s")?;
+    writeln!(text, "{:17} {:>10}", "pitch by", "rms error")?;
+    for ((name, _), square) in LINES.iter().skip(1).zip(squares) {
+        writeln!(text, "{name:17} {:9.2}°", f64::sqrt(square / compared))?;
     }
+    let look = Look {
+        scales: [Scale::Even; 2],
+        strokes: &LINES.map(|(_, stroke)| stroke),
+    };
     let picture = Picture {
-        title: "Pitch over time (lecture, 2016)",
+        title: &format!("Pitch over time (2016 lecture): {}", motion.name),
         x: "time (s)",
         y: "pitch (°)",
         lines: lines.into(),
     };
-    println!("{}", picture.save("pitch_over_time")?.display());
-    Ok(())
-}
-
-fn main() {
-    if let Err(problem) = run() {
-        eprintln!("error: {problem}");
-        std::process::exit(1);
-    }
+    Ok(writeln!(
+        text,
+        "{}",
+        picture.save_with("pitch_over_time", &look)?.display()
+    )?)
 }

@@ -4,10 +4,13 @@
 //! Run with `cargo run --example printed_against_corrected`. Expect a table of both numbers; the
 //! picture has eq. 11 beside eq. 12 of the notes (section 4), wrong wherever the board is upside down.
 
+use std::error::Error;
 use std::f64::consts::TAU;
+use std::fmt::{self, Write as _};
+use std::process::ExitCode;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use picture::{Line, Picture};
+use picture::{Line, Look, Picture, Scale};
 use vrduino::orientation::angles::{PitchRoll, pitch_and_roll, pitch_full_circle};
 use vrduino::orientation::flatland::shortest_turn;
 use vrduino::orientation::quaternion::axis_angle;
@@ -20,18 +23,28 @@ use vrduino::virtual_gyro::{TaitBryan, attitude_quaternion};
 #[path = "picture/mod.rs"]
 mod picture;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    println!("place                                       printed    corrected");
-    let row = |place: &str, [printed, corrected]: [f64; 2]| {
-        println!("{place:38} {printed:12.5} {corrected:12.5}");
+#[path = "program/mod.rs"]
+mod program;
+
+fn main() -> ExitCode {
+    program::run(include_str!("printed_against_corrected.rs"), 0, run)
+}
+
+fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
+    writeln!(
+        text,
+        "place                                       printed    corrected"
+    )?;
+    let mut row = |place: &str, [printed, corrected]: [f64; 2]| -> fmt::Result {
+        writeln!(text, "{place:38} {printed:12.5} {corrected:12.5}")
     };
-    row("000 eq. 5: count -32768 at 250 °/s", full_scale());
-    row("000 eq. 9: 179° and -179°, weight 0.9", seam());
-    row("000 eq. 23: tilt 1e-4 rad, f32 (rad)", small_tilt());
-    row("000 eq. 36: 10° turn written as -q (°)", double_cover());
+    row("000 eq. 5: count -32768 at 250 °/s", full_scale())?;
+    row("000 eq. 9: 179° and -179°, weight 0.9", seam())?;
+    row("000 eq. 23: tilt 1e-4 rad, f32 (rad)", small_tilt())?;
+    row("000 eq. 36: 10° turn written as -q (°)", double_cover())?;
     let gain = cut_off().ok_or("no such cut-off")?;
-    row("002 3.2.1: gain at the cut-off 0.02 F_e", gain);
-    row("002 3.6: q of φ, θ, ψ, off by (°)", order());
+    row("002 3.2.1: gain at the cut-off 0.02 F_e", gain)?;
+    row("002 3.6: q of φ, θ, ψ, off by (°)", order())?;
 
     let rolls = || (-180..=180).map(f64::from);
     let points = |which: usize| rolls().map(|roll| [roll, rebuilt(roll)[which]]).collect();
@@ -39,20 +52,29 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let [printed, corrected] = rebuilt(roll);
         [most[0].max(printed), most[1].max(corrected)]
     });
-    row("000 eq. 11, 12: up rebuilt, off by (°)", worst);
+    row("000 eq. 11, 12: up rebuilt, off by (°)", worst)?;
     let lines = [("printed", 0), ("corrected", 1)];
     let lines = lines.map(|(name, which)| Line {
         name,
         points: points(which),
     });
+    let look = Look {
+        scales: [Scale::Circle, Scale::Even],
+        strokes: &[],
+    };
     let picture = Picture {
-        title: "Up rebuilt from pitch and roll of eq. 11 and 12, pitch 10°",
+        title: "Up rebuilt from pitch and roll of eq. 11 and 12 at a pitch of 10°: how far off",
         x: "roll (°)",
         y: "off by (°)",
         lines: lines.into(),
     };
-    println!("{}", picture.save("printed_against_corrected")?.display());
-    Ok(())
+    Ok(writeln!(
+        text,
+        "{}",
+        picture
+            .save_with("printed_against_corrected", &look)?
+            .display()
+    )?)
 }
 
 fn full_scale() -> [f64; 2] {

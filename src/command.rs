@@ -1,5 +1,5 @@
 //! Single keys without a newline, as the course's programs send them, and lines that begin with a
-//! colon, [`request`]s, whose letters press no keys.
+//! colon, requests ([`request`](crate::command::request)), whose letters press no keys.
 //!
 //! A line that begins with anything else is passed over to its end: a terminal that nobody has told
 //! otherwise echoes what the board streams, and the digits in it would press keys without end. No line
@@ -45,7 +45,7 @@ pub enum Command {
 /// Bytes after which a line is taken for noise: more than the longest line of the stream.
 const LONGEST_LINE: u8 = 128;
 /// Longest request, without its colon.
-const LONGEST_REQUEST: usize = 64;
+const LONGEST_REQUEST: usize = 72;
 /// Calls of [`Parser::idle`] in a row after which a mistyped key is forgotten. An echo never pauses
 /// as long inside a line.
 const SILENCE: u8 = 20;

@@ -42,6 +42,7 @@ use heading::Heading;
 use inclination::Inclination;
 use integral::Integral;
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
+use parameters::DECIMATION;
 use rest::Rest;
 
 /// The default estimator. Generic over the scalar; what it does in `f64` is the definition that
@@ -104,11 +105,14 @@ impl<T: RealField + Copy> Fusion<T> {
             self.inclination.level(sample.force);
             self.started = true;
         }
-        let motion = self.rest.update(rate, force, self.bias.at_rest());
-        if let Motion::Still { samples } = motion {
-            self.bias.rests(self.rest.mean_rate(), samples);
-        } else {
-            self.bias.moves();
+        if self.rest.update(rate, force, self.bias.at_rest()) {
+            match self.motion() {
+                Motion::Still { samples } => {
+                    let number = samples / DECIMATION;
+                    self.bias.rests(self.rest.mean_rate(), number);
+                }
+                Motion::Moving { .. } => self.bias.moves(),
+            }
         }
         self.rate = AngularRate::from_rad_per_s(rate - self.bias.rad_per_s());
         self.inclination.update(self.rate, sample.force);
@@ -123,7 +127,7 @@ impl<T: RealField + Copy> Fusion<T> {
         let error = self
             .integral
             .update(&self.inclination, heading_error, self.bias.source());
-        if let (Motion::Moving { .. }, Some(error)) = (motion, error) {
+        if let (Motion::Moving { .. }, Some(error)) = (self.motion(), error) {
             self.bias.shift(error);
         }
     }
@@ -165,6 +169,11 @@ impl<T: RealField + Copy> Fusion<T> {
     /// Takes this rate (body frame) for the gyro's bias, as one measured at rest.
     pub fn set_bias(&mut self, at_rest: AngularRate<T>) {
         self.bias.set(at_rest);
+    }
+
+    /// Begins with this rate (body frame) as the gyro's bias, without believing that it was measured.
+    pub fn guess_bias(&mut self, rate: AngularRate<T>) {
+        self.bias.guess(rate);
     }
 
     /// What the gyro reads when nothing turns, and how that is known.

@@ -26,8 +26,9 @@
 //!   the board up. A level board at the starting heading has the identity as its orientation.
 //! * An orientation q takes vectors **from body to world**: u_world = q u_body q⁻¹ (eq. 19).
 //!   Wherever a quaternion is spelled out the order is w, x, y, z.
-//! * Numbers with a unit have a type that names it ([`units`]); a bare float crosses no module
-//!   boundary.
+//! * Rates, forces, fields, angles, times and lengths have a type that names their unit ([`units`]).
+//!   Bare numbers are what has no unit (weights, gains, factors, quaternions, directions) and a few
+//!   that name theirs (`max_dps`, `microtesla_per_count`).
 //! * The estimators are generic over the scalar: `f32` on the board, `f64` in tests. They never
 //!   panic and never return anything but a finite unit quaternion, whatever they are fed.
 //!
@@ -49,6 +50,15 @@
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
+
+/// Its vectors and unit quaternions are in this crate's interface: whoever calls it needs the very
+/// version that it was built with.
+pub use nalgebra;
+
+/// The Rust in the README compiles and runs as the documentation's does.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;
 
 /// Quantities with units: a rate is never mistaken for an angle, nor degrees for radians.
 pub mod units;
@@ -73,6 +83,9 @@ pub mod fusion;
 
 /// A gyro made of an accelerometer and a magnetometer.
 pub mod virtual_gyro;
+
+/// Numbers as people write them.
+pub mod decimal;
 
 /// Lines of text for the host, to the byte.
 pub mod wire;

@@ -10,18 +10,22 @@
 //! [`SAMPLE_PERIOD`]: crate::tracker::SAMPLE_PERIOD
 
 mod answers;
+mod calibration;
 mod compass;
 mod estimators;
 
+use crate::calibration::record::Record;
 use crate::calibration::{GyroBias, Reading, Rest, Stillness, Verdict};
+use crate::command::request::UseCompass;
 use crate::command::{Command, Mode};
 use crate::orientation::flatland::Flatland;
 use crate::orientation::gyro::DeadReckoning;
 use crate::orientation::{DEFAULT_TIME_CONSTANT, angles};
 use crate::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use crate::sensor::{Ranges, RawSample, Sample};
-use crate::units::{Seconds, SpecificForce};
+use crate::units::{MagneticField, Seconds, SpecificForce};
 use crate::wire::{self, Decimals, Line, Tag};
+use calibration::Calibration;
 use compass::Compass;
 use estimators::Estimators;
 use nalgebra::UnitQuaternion;
@@ -69,6 +73,8 @@ pub struct Tracker {
     gyro: DeadReckoning<f32>,
     flat: Flatland<f32>,
     compass: Compass,
+    use_compass: UseCompass,
+    calibration: Calibration,
     phase: Phase,
     ticks: u32,
     counts: Counts,
@@ -114,6 +120,8 @@ impl Tracker {
             gyro: DeadReckoning::new(SAMPLE_PERIOD),
             flat: Flatland::new(DEFAULT_TIME_CONSTANT, SAMPLE_PERIOD),
             compass: Compass::none(),
+            use_compass: UseCompass::default(),
+            calibration: Calibration::new(),
             phase: Phase::Starting,
             ticks: 0,
             counts: Counts::default(),
@@ -156,6 +164,35 @@ impl Tracker {
         self.compass = Compass::of(adjustment);
     }
 
+    /// What was found by calibrations before, and kept.
+    pub fn set_calibration(&mut self, record: &Record) {
+        self.calibration.set(record);
+        self.guess_bias(record);
+    }
+
+    /// Until one is measured here, a bias from another day is better than none.
+    fn guess_bias(&mut self, record: &Record) {
+        if let Some(gyro) = record.gyro
+            && !self.estimators.bias_is_measured()
+        {
+            self.estimators.guess_bias(gyro.bias);
+        }
+    }
+
+    /// What is to be kept, once after each change of it.
+    pub fn take_calibration_to_keep(&mut self) -> Option<Record> {
+        self.calibration.take_to_keep()
+    }
+
+    /// A board of which the iron is not known has no compass worth following.
+    fn follows_compass(&self) -> bool {
+        match self.use_compass {
+            UseCompass::Auto => self.calibration.knows_field(),
+            UseCompass::On => true,
+            UseCompass::Off => false,
+        }
+    }
+
     /// The fused orientation, body to world; the identity until there is one.
     pub fn orientation(&self) -> UnitQuaternion<f32> {
         self.estimators.orientation()
@@ -172,12 +209,15 @@ impl Tracker {
         emit: &mut impl FnMut(&Line),
     ) {
         self.count(raw);
-        // No filter takes the field yet: it is counted and shown.
-        if let Some(error) = self.compass.update(field).warning {
+        let measured = self.compass.update(field);
+        if let Some(error) = measured.warning {
             emit(&wire::text(format_args!("warning: {error}")));
         }
-        let sample: Sample<f32> = self.ranges.sample(raw);
-        let reading = self.track(sample);
+        let field = measured.result.and_then(Result::ok);
+        let field = field.filter(|_| self.follows_compass());
+        let field = field.map(|field| self.calibration.field(field));
+        let sample = self.calibration.sample(self.ranges.sample(raw));
+        let reading = self.track(sample, field);
         self.measure(raw, sample.force, emit);
         self.tell_of_bias(emit);
         if self.phase != Phase::Starting {
@@ -206,10 +246,10 @@ impl Tracker {
     /// The default mode runs the chosen estimator and nothing else. Returns the sample without the
     /// bias that it takes off.
     #[inline(never)] // a function of its own in the image, which the emulator times
-    fn track(&mut self, sample: Sample<f32>) -> Reading<f32> {
+    fn track(&mut self, sample: Sample<f32>, field: Option<MagneticField<f32>>) -> Reading<f32> {
         match self.phase {
             Phase::Starting => return GyroBias::zero().correct(sample),
-            Phase::Running => self.estimators.update(&sample, None),
+            Phase::Running => self.estimators.update(&sample, field),
             Phase::Resetting => self.start(sample.force),
             Phase::Releveling => {
                 self.estimators.level(sample.force);

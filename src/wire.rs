@@ -5,6 +5,7 @@
 //! The decimals are written without floating point at all: see [`Line`](crate::wire::Line) for what is promised.
 
 use crate::calibration::Rest;
+use crate::decimal::{Decimal, write_digits};
 use crate::orientation::angles::PitchRoll;
 use crate::orientation::flatland::Roll;
 use crate::units::{Angle, AngularRate, MagneticField, SpecificForce};
@@ -21,7 +22,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub type Line = String<LINE_LEN>;
 
 /// Longest line in bytes, newline included.
-pub const LINE_LEN: usize = 96;
+pub const LINE_LEN: usize = 160;
 
 /// Which orientation a quaternion line shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -246,61 +247,11 @@ fn push(line: &mut Line, s: &str) {
     let _ = line.push_str(s);
 }
 
+/// No number is too long for a line.
 fn push_decimal(line: &mut Line, value: f32, decimals: u32) {
-    let one = 10_u64.pow(decimals);
-    let steps = magnitude_in_steps(value, one);
-    if value < 0.0 && steps > 0 {
-        push(line, "-");
-    }
-    push_digits(line, steps / one, 1);
-    push(line, ".");
-    push_digits(line, steps % one, decimals as usize);
+    let _ = Decimal(value, decimals).write_to(line);
 }
 
-/// |value| in steps of 1/`per_one`, to the nearest, halves up.
-fn magnitude_in_steps(value: f32, per_one: u64) -> u64 {
-    let largest = 1_000_000 * per_one - per_one.div_ceil(1000);
-    if value.is_nan() {
-        return 0;
-    }
-    if value.abs() >= 1e6 {
-        return largest;
-    }
-    // value = significand × 2^-shift. Below a million, shift is at least 4, and significand ×
-    // per_one has at most 24 + 17 bits.
-    let bits = value.to_bits();
-    let exponent = (bits >> 23) & 0xFF;
-    let fraction = u64::from(bits & 0x007F_FFFF);
-    let (significand, shift) = match exponent {
-        0 => (fraction, 149),
-        _ => (fraction | 0x0080_0000, 150 - exponent),
-    };
-    let product = significand * per_one;
-    let half = 1_u64.checked_shl(shift - 1).unwrap_or(u64::MAX / 2);
-    let rounded = (product + half).checked_shr(shift).unwrap_or(0);
-    rounded.min(largest)
-}
-
-/// Decimal digits, padded with zeros on the left to at least `width`.
-#[inline(never)] // with its loops unrolled, half a kilobyte for every place it is called from
-fn push_digits(line: &mut Line, mut value: u64, width: usize) {
-    let mut digits = [b'0'; 20];
-    let mut used = 0;
-    for place in digits.iter_mut().rev() {
-        // 32-bit division is an instruction on the target, 64-bit division a routine.
-        if let Ok(small) = u32::try_from(value) {
-            *place = b'0' + (small % 10) as u8;
-            value = u64::from(small / 10);
-        } else {
-            *place = b'0' + (value % 10) as u8;
-            value /= 10;
-        }
-        used += 1;
-        if value == 0 && used >= width {
-            break;
-        }
-    }
-    for &digit in digits.iter().skip(digits.len() - used) {
-        let _ = line.push(char::from(digit));
-    }
+fn push_digits(line: &mut Line, value: u64, width: usize) {
+    let _ = write_digits(line, value, width);
 }

@@ -4,7 +4,7 @@
 mod random;
 
 use random::Random;
-use vrduino::command::request::{Choice, Request, Setting};
+use vrduino::command::request::{Choice, Request, Setting, UseCompass};
 use vrduino::command::{Command, Mode, Parser};
 use vrduino::wire::{Decimals, LINE_LEN};
 
@@ -44,7 +44,7 @@ fn line(text: &str) -> Result<Request, String> {
 fn the_words_of_a_line_press_no_keys() {
     for end in ["\n", "\r", "\r\n"] {
         let typed = commands(format!(":compass off{end}b").as_bytes());
-        let off = Command::Line(Ok(Request::Compass(Some(false))));
+        let off = Command::Line(Ok(Request::Compass(Some(UseCompass::Off))));
         assert_eq!(typed, [off, Command::MeasureBias]);
     }
     assert_eq!(commands(b":a:b").len(), 0, "it has not ended");
@@ -53,7 +53,7 @@ fn the_words_of_a_line_press_no_keys() {
         Err("a:b: no such verb, :help lists them".into())
     );
     // A colon that no newline follows does not silence the keys for ever.
-    let noise = [b":".as_slice(), &[b'r'; 194], b"r"].concat();
+    let noise = [b":".as_slice(), &[b'r'; 202], b"r"].concat();
     let typed = commands(&noise);
     assert_eq!(typed.len(), 2, "{typed:?}");
     assert_eq!(typed[1], Command::Reset);
@@ -75,7 +75,11 @@ fn every_verb_is_understood() {
         ("decimals", Request::Decimals(None)),
         ("decimals 5", Request::Decimals(Decimals::new(5))),
         ("compass", Request::Compass(None)),
-        ("compass on", Request::Compass(Some(true))),
+        ("compass on", Request::Compass(Some(UseCompass::On))),
+        ("compass auto", Request::Compass(Some(UseCompass::Auto))),
+        ("calibration", Request::Calibration),
+        ("keep done", Request::KeepDone),
+        ("forget", Request::Forget),
         ("get notes-alpha", Request::Get(Setting::NotesAlpha)),
         (
             "set notes-alpha 0.98",
@@ -105,7 +109,7 @@ fn a_refusal_names_the_word_and_fits_a_line() {
         ("", ": no such verb, :help lists them"),
         ("HELP", "HELP: no such verb, :help lists them"),
         ("estimator kalman", "kalman: default or notes is wanted"),
-        ("compass maybe", "maybe: on or off is wanted"),
+        ("compass maybe", "maybe: auto, on or off is wanted"),
         ("get tau", "tau: no such setting, :set lists them"),
         ("set lead", "lead: a number like 0.98 is wanted"),
         ("set lead fast", "fast: a number like 0.98 is wanted"),
@@ -128,13 +132,13 @@ fn a_refusal_names_the_word_and_fits_a_line() {
     for setting in Setting::ALL {
         assert!(settings.contains(setting.name()), "{settings}");
     }
-    let longest = "w".repeat(64);
+    let longest = "w".repeat(72);
     for text in [
         "set",
         "get",
         "set lead",
         &longest,
-        &format!("set lead {longest}")[..64],
+        &format!("set lead {longest}")[..72],
     ] {
         let refusal = line(text).unwrap_err();
         assert!("ERR ".len() + refusal.len() < LINE_LEN, "{refusal}");

@@ -172,7 +172,7 @@ fn the_magnetometer_has_its_own_scale_and_eq_5_is_not_it() {
         // The data sheet: ±4912 µT at the ends.
         assert!((end / 4912.0 - 1.0).abs() < 0.0005);
     }
-    // As printed, with the notes' ±4800 µT: 0.1465 µT a count, 2.4 % low.
+    // As printed, with the notes' ±4800 µT: 0.1465 µT a count, 2.34 % low.
     let printed = printed_eq_5(1, 4800.0);
     assert!((printed - 0.146_489).abs() < 1e-6);
     assert!((1.0 - printed / 0.15 - 0.0234).abs() < 1e-4);

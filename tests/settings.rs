@@ -12,7 +12,7 @@ fn every_verb_is_answered() {
     for (line, answer) in [
         (
             ":help",
-            "OK verbs: help version estimator get set defaults compass bias decimals\n",
+            "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals\n",
         ),
         (
             ":version",
@@ -21,8 +21,12 @@ fn every_verb_is_answered() {
         (":estimator", "OK estimator default\n"),
         (":estimator notes", "OK estimator notes\n"),
         (":estimator", "OK estimator notes\n"),
-        (":compass", "OK compass on\n"),
+        (
+            ":compass",
+            "OK compass auto: not used, the field is not calibrated\n",
+        ),
         (":compass off", "OK compass off\n"),
+        (":compass on", "OK compass on: no field\n"),
         (":set tilt-time 2.5", "OK tilt-time 2.5000 s\n"),
         (":get tilt-time", "OK tilt-time 2.5000 s\n"),
         (":set notes-alpha 0.9", "OK notes-alpha 0.9000\n"),
@@ -31,7 +35,10 @@ fn every_verb_is_answered() {
         (":get notes-time", "OK notes-time 7.6000 s\n"),
         (":get tilt-time", "OK tilt-time 3.0000 s\n"),
         (":estimator", "OK estimator default\n"),
-        (":compass", "OK compass on\n"),
+        (
+            ":compass",
+            "OK compass auto: not used, the field is not calibrated\n",
+        ),
         (":decimals", "OK decimals 3\n"),
         (":decimals 6", "OK decimals 6\n"),
         (":decimals 7", "ERR 7: 3 to 6 is wanted\n"),
@@ -107,7 +114,7 @@ fn the_verdict_on_the_bias_says_how_it_is_known() {
     bench.feed(2000, handled);
     let moving = bench.ask(":bias");
     assert!(
-        moving.ends_with("deg/s, moving, at rest 1 s ago\n"),
+        moving.ends_with("deg/s, moving, at rest 2 s ago\n"),
         "{moving}"
     );
     bench.ask(":estimator notes");

@@ -6,7 +6,6 @@ use std::path::Path;
 use nalgebra::UnitQuaternion;
 
 #[path = "../../examples/picture/mod.rs"]
-#[allow(dead_code)] // The examples save where cargo builds.
 mod picture;
 
 use crate::estimators::{Axes, Estimator};

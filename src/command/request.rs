@@ -21,12 +21,75 @@ pub enum Request {
     Set(Setting, f32),
     /// `:defaults`: every setting as it was, the default estimator, the compass on.
     Defaults,
-    /// `:compass` asks, `:compass on` and `:compass off` choose.
-    Compass(Option<bool>),
+    /// `:compass` asks, `:compass auto`, `:compass on` and `:compass off` choose.
+    Compass(Option<UseCompass>),
+    /// `:calibration`: what is known of the sensor's faults.
+    Calibration,
+    /// `:keep AT HEX`: some bytes of a [`Record`](crate::calibration::record::Record).
+    Keep(Piece),
+    /// `:keep done`: they are all there; check, use and keep them.
+    KeepDone,
+    /// `:forget`: keep none.
+    Forget,
     /// `:decimals` asks, `:decimals 3` to `:decimals 6` choose: of a quaternion in the stream.
     Decimals(Option<Decimals>),
     /// `:bias`: what the gyro reads at rest, and how that is known.
     Bias,
+}
+
+/// When the heading follows the magnetometer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UseCompass {
+    /// If the board's iron is known from a calibration.
+    #[default]
+    Auto,
+    /// Even so.
+    On,
+    /// Never.
+    Off,
+}
+
+/// Most bytes of a record in one line.
+const PIECE: usize = 24;
+
+/// Some bytes of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece {
+    at: u8,
+    length: u8,
+    bytes: [u8; PIECE],
+}
+
+impl Piece {
+    /// From hexadecimal digits, two a byte, either case.
+    fn parse(at: u8, digits: &str) -> Option<Self> {
+        let (pairs, rest) = digits.as_bytes().as_chunks::<2>();
+        if pairs.is_empty() || pairs.len() > PIECE || !rest.is_empty() {
+            return None;
+        }
+        let mut bytes = [0; PIECE];
+        for (byte, pair) in bytes.iter_mut().zip(pairs) {
+            let [high, low] = pair.map(|digit| char::from(digit).to_digit(16));
+            *byte = (high? << 4 | low?) as u8;
+        }
+        Some(Self {
+            at,
+            length: pairs.len() as u8,
+            bytes,
+        })
+    }
+
+    /// Where they belong.
+    pub fn at(&self) -> usize {
+        usize::from(self.at)
+    }
+
+    /// Themselves.
+    pub fn bytes(&self) -> &[u8] {
+        self.bytes
+            .get(..usize::from(self.length))
+            .unwrap_or_default()
+    }
 }
 
 /// Which estimator makes the orientation.
@@ -221,10 +284,27 @@ pub fn parse(line: &str) -> Result<Request, Refusal> {
         }),
         "compass" => Request::Compass(match next() {
             None => None,
-            Some("on") => Some(true),
-            Some("off") => Some(false),
-            Some(other) => return refuse(other, Reason::Wanted("on or off")),
+            Some("auto") => Some(UseCompass::Auto),
+            Some("on") => Some(UseCompass::On),
+            Some("off") => Some(UseCompass::Off),
+            Some(other) => return refuse(other, Reason::Wanted("auto, on or off")),
         }),
+        "calibration" => Request::Calibration,
+        "forget" => Request::Forget,
+        "keep" => match next() {
+            None => return refuse(verb, Reason::Wanted("an offset and bytes, or done,")),
+            Some("done") => Request::KeepDone,
+            Some(offset) => {
+                let Ok(at) = offset.parse() else {
+                    return refuse(offset, Reason::Wanted("an offset from 0 or done"));
+                };
+                let digits = next().unwrap_or_default();
+                let Some(piece) = Piece::parse(at, digits) else {
+                    return refuse(digits, Reason::Wanted("1 to 24 bytes in hexadecimal"));
+                };
+                Request::Keep(piece)
+            }
+        },
         "decimals" => Request::Decimals(match next() {
             None => None,
             Some(word) => {

@@ -1,7 +1,7 @@
 //! What the gyro reads when nothing turns. At rest that is its mean; on the move,
 //! [`Integral`](super::integral::Integral) moves it slowly.
 
-use super::parameters::{Parameters, Rates, samples, share, size};
+use super::parameters::{DECIMATION, Parameters, Rates, samples, scalar, share, size};
 use crate::units::{AngularRate, RADIANS_PER_DEGREE, Seconds};
 use nalgebra::{RealField, Vector3, convert};
 
@@ -30,7 +30,7 @@ pub struct Bias<T: RealField> {
 struct Coefficients<T> {
     /// rad/s.
     largest: T,
-    /// Samples a mean at rest goes back at most.
+    /// Blocks that a mean at rest goes back at most.
     memory: u32,
 }
 
@@ -41,7 +41,10 @@ impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {
         Self {
             largest: size(parameters.largest_bias_dps * convert(RADIANS_PER_DEGREE)),
-            memory: samples(Seconds(convert(MEMORY)), rates.sample),
+            memory: samples(
+                Seconds(convert(MEMORY)),
+                Seconds(rates.sample.0 * scalar(DECIMATION)),
+            ),
         }
     }
 }
@@ -79,16 +82,20 @@ impl<T: RealField + Copy> Bias<T> {
         self.rad_per_s
     }
 
-    pub(super) fn set(&mut self, at_rest: AngularRate<T>) {
-        let rate = at_rest.rad_per_s();
+    pub(super) fn guess(&mut self, rate: AngularRate<T>) {
+        let rate = rate.rad_per_s();
         if rate.iter().all(|component| component.is_finite()) {
             self.rad_per_s = self.bounded(rate);
-            self.at_rest = Some(self.rad_per_s);
-            self.source = Source::Rest { samples: 0 };
         }
     }
 
-    /// The `number`th sample of a rest (from 1): the mean of the low-passed rate.
+    pub(super) fn set(&mut self, at_rest: AngularRate<T>) {
+        self.guess(at_rest);
+        self.at_rest = Some(self.rad_per_s);
+        self.source = Source::Rest { samples: 0 };
+    }
+
+    /// The `number`th block of a rest (from 1): the mean of the low-passed rate.
     pub(super) fn rests(&mut self, mean_rate: Vector3<T>, number: u32) {
         let number = number.min(self.coefficients.memory);
         let step = (mean_rate - self.rad_per_s) * share::<T>(number);
@@ -97,10 +104,10 @@ impl<T: RealField + Copy> Bias<T> {
         self.source = Source::Rest { samples: 0 };
     }
 
-    /// A sample on the move.
+    /// A block on the move.
     pub(super) fn moves(&mut self) {
         if let Source::Rest { samples } = &mut self.source {
-            *samples = samples.saturating_add(1);
+            *samples = samples.saturating_add(DECIMATION);
         }
     }
 

@@ -3,7 +3,9 @@
 
 use super::bias::Source;
 use super::inclination::Inclination;
-use super::parameters::{Parameters, Rates, low_pass_weight_of, samples, scalar, size, weight};
+use super::parameters::{
+    DECIMATION, Parameters, Rates, low_pass_weight_of, samples, scalar, size, weight,
+};
 use crate::units::Seconds;
 use nalgebra::{RealField, Vector3, convert};
 
@@ -27,9 +29,9 @@ pub struct Integral<T: RealField> {
 struct Coefficients<T> {
     period: T,
     field_period: T,
-    /// Share of the axes of now in [`EVERY`] samples.
+    /// Share of the axes of now in [`DECIMATION`] samples.
     low_pass: T,
-    /// Gain in [`EVERY`] samples, 1/s.
+    /// Gain in [`DECIMATION`] samples, 1/s.
     tilt: T,
     tilt_start: T,
     /// Samples until the gain is the lasting one.
@@ -41,8 +43,6 @@ struct Coefficients<T> {
     field_start: u32,
 }
 
-/// Samples per look at the tilt's error: it changes slowly, and a turn into the body's axes is dear.
-const EVERY: u32 = 8;
 /// The compass is left alone for its first second, s.
 const FIELD_START: f64 = 1.0;
 /// An error of tilt beyond this (rad, 3°) is a knock's, not a bias's.
@@ -50,7 +50,7 @@ const LARGEST_ERROR: f64 = 0.05;
 
 impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {
-        let every: T = scalar(EVERY);
+        let every: T = scalar(DECIMATION);
         Self {
             period: size(rates.sample.0),
             field_period: size(rates.field.0),
@@ -95,7 +95,7 @@ impl<T: RealField + Copy> Integral<T> {
         source: Source,
     ) -> Option<Vector3<T>> {
         self.age = self.age.saturating_add(1);
-        let due = self.age.is_multiple_of(EVERY) && inclination.is_settled();
+        let due = self.age.is_multiple_of(DECIMATION) && inclination.is_settled();
         let tilt = due.then(|| {
             let [x, z] = self.follow(inclination);
             let gain = self.tilt_gain(source);

@@ -95,6 +95,9 @@ pub(super) fn low_pass_weight<T: RealField + Copy>(time: Seconds<T>, period: Sec
     weight(-(-period.0 / time.0).exp_m1())
 }
 
+/// Samples per look at what changes slowly: rest, and what the tilt's error says of the bias.
+pub(super) const DECIMATION: u32 = 8;
+
 /// The share of the newest in the low-pass of the tilt's error, 1 − exp(−2ζω₀Δt) with ω₀ = √2/τ.
 pub(super) fn low_pass_weight_of<T: RealField + Copy>(
     parameters: &Parameters<T>,

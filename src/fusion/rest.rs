@@ -1,6 +1,7 @@
-//! Nothing moves if rate and force have stayed close to their own low-pass for a while.
+//! Nothing moves if rate and force have stayed close to their own low-pass for a while. They are
+//! looked at as means of [`DECIMATION`] samples.
 
-use super::parameters::{Parameters, low_pass_weight, samples, size};
+use super::parameters::{DECIMATION, Parameters, low_pass_weight, samples, scalar, share, size};
 use crate::units::{AngularRate, RADIANS_PER_DEGREE, Seconds};
 use nalgebra::{RealField, Vector3, convert};
 
@@ -9,12 +10,12 @@ use nalgebra::{RealField, Vector3, convert};
 pub enum Motion {
     /// At rest for so long.
     Still {
-        /// Samples since rest was noticed; the first is 1.
+        /// Samples since rest was noticed, counted in eights.
         samples: u32,
     },
     /// Moving, or not yet still for long enough.
     Moving {
-        /// Samples since the end of the last rest; since the start if there was none.
+        /// Samples since the end of the last rest, counted in eights; since the start if there was none.
         samples: u32,
     },
 }
@@ -23,15 +24,19 @@ pub enum Motion {
 #[derive(Clone, Copy, Debug)]
 pub struct Rest<T: RealField> {
     coefficients: Coefficients<T>,
-    /// Low-passed rate, rad/s, and force, m/s²; none before the first sample.
+    /// Sums of the block that is under way, and how many samples are in it.
+    block: (Vector3<T>, Vector3<T>),
+    samples: u32,
+    /// Low-passed rate, rad/s, and force, m/s²; none before the first block.
     mean: Option<(Vector3<T>, Vector3<T>)>,
-    /// Samples in a row close to the mean.
+    /// Blocks in a row close to the mean.
     calm: u32,
     motion: Motion,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Coefficients<T> {
+    /// Of a block.
     low_pass: T,
     /// Squared, (rad/s)².
     rate: T,
@@ -41,8 +46,9 @@ struct Coefficients<T> {
     largest_bias: T,
     /// rad/s.
     largest_change: T,
+    /// Blocks.
     calm: u32,
-    /// Calm for so long outdoes a bias known before.
+    /// Calm for so long outdoes a bias known before; blocks.
     long: u32,
 }
 
@@ -53,9 +59,10 @@ impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
         let radians: T = convert(RADIANS_PER_DEGREE);
         let rate = size(parameters.rest_rate_dps * radians);
-        let calm = samples(parameters.rest_time, period);
+        let block = Seconds(period.0 * scalar(DECIMATION));
+        let calm = samples(parameters.rest_time, block);
         Self {
-            low_pass: low_pass_weight(parameters.rest_filter_time, period),
+            low_pass: low_pass_weight(parameters.rest_filter_time, block),
             rate: rate * rate,
             force: size(parameters.rest_force) * size(parameters.rest_force),
             largest_bias: parameters.largest_bias_dps * radians,
@@ -70,6 +77,8 @@ impl<T: RealField + Copy> Rest<T> {
     pub fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
         Self {
             coefficients: Coefficients::new(parameters, period),
+            block: (Vector3::zeros(), Vector3::zeros()),
+            samples: 0,
             mean: None,
             calm: 0,
             motion: Motion::Moving { samples: 0 },
@@ -80,17 +89,51 @@ impl<T: RealField + Copy> Rest<T> {
         self.coefficients = Coefficients::new(parameters, period);
     }
 
-    /// One sample, rad/s with its bias and m/s², body frame.
-    ///
-    /// A steady slow turn about the vertical looks like a bias to a gyro and an accelerometer. What
-    /// bounds it is how large a bias can be, and, once one was measured at rest (`known`), how far it
-    /// can have drifted; a bias that is farther off must show for half a minute.
+    /// One sample, rad/s with its bias and m/s², body frame. True if a block has ended with it, and
+    /// [`Self::motion`] has been judged anew.
     pub fn update(
         &mut self,
         rate: Vector3<T>,
         force: Vector3<T>,
         known: Option<AngularRate<T>>,
-    ) -> Motion {
+    ) -> bool {
+        self.block = (self.block.0 + rate, self.block.1 + force);
+        self.samples += 1;
+        if self.samples < DECIMATION {
+            return false;
+        }
+        let share = share::<T>(DECIMATION);
+        let (rate, force) = (self.block.0 * share, self.block.1 * share);
+        self.block = (Vector3::zeros(), Vector3::zeros());
+        self.samples = 0;
+        let still = self.is_still(rate, force, known);
+        let more = |samples: u32| samples.saturating_add(DECIMATION);
+        self.motion = match (still, self.motion) {
+            (true, Motion::Still { samples }) => Motion::Still {
+                samples: more(samples),
+            },
+            (true, Motion::Moving { .. }) => Motion::Still {
+                samples: DECIMATION,
+            },
+            (false, Motion::Moving { samples }) => Motion::Moving {
+                samples: more(samples),
+            },
+            (false, Motion::Still { .. }) => Motion::Moving {
+                samples: DECIMATION,
+            },
+        };
+        true
+    }
+
+    /// A steady slow turn about the vertical looks like a bias to a gyro and an accelerometer. What
+    /// bounds it is how large a bias can be, and, once one was measured at rest (`known`), how far it
+    /// can have drifted; a bias that is farther off must show for half a minute.
+    fn is_still(
+        &mut self,
+        rate: Vector3<T>,
+        force: Vector3<T>,
+        known: Option<AngularRate<T>>,
+    ) -> bool {
         let Coefficients {
             low_pass,
             rate: rate_limit,
@@ -114,18 +157,7 @@ impl<T: RealField + Copy> Rest<T> {
         };
         let drifted =
             known.is_some_and(|known| (mean_rate - known.rad_per_s()).amax() > largest_change);
-        let still = self.calm >= if drifted { long } else { calm };
-        self.motion = match (still, self.motion) {
-            (true, Motion::Still { samples }) => Motion::Still {
-                samples: samples.saturating_add(1),
-            },
-            (true, Motion::Moving { .. }) => Motion::Still { samples: 1 },
-            (false, Motion::Moving { samples }) => Motion::Moving {
-                samples: samples.saturating_add(1),
-            },
-            (false, Motion::Still { .. }) => Motion::Moving { samples: 1 },
-        };
-        self.motion
+        self.calm >= if drifted { long } else { calm }
     }
 
     /// The low-passed rate, rad/s, body frame; zero before the first sample.
@@ -139,6 +171,8 @@ impl<T: RealField + Copy> Rest<T> {
 
     /// Forgets what it saw, but not since when the board moves.
     pub fn restart(&mut self) {
+        self.block = (Vector3::zeros(), Vector3::zeros());
+        self.samples = 0;
         self.mean = None;
         self.calm = 0;
     }

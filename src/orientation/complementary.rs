@@ -10,6 +10,26 @@ use crate::units::{Seconds, SpecificForce};
 use nalgebra::{RealField, UnitQuaternion};
 
 /// The complementary filter on quaternions, eq. 24.
+///
+/// ```
+/// use vrduino::calibration::GyroBias;
+/// use vrduino::nalgebra::Vector3;
+/// use vrduino::orientation::{DEFAULT_TIME_CONSTANT, complementary::Complementary};
+/// use vrduino::sensor::Sample;
+/// use vrduino::units::{AngularRate, Seconds, SpecificForce};
+///
+/// let bias = GyroBias::new(AngularRate::from_dps(Vector3::new(0.8, -0.5, 0.3)));
+/// let mut filter = Complementary::new(DEFAULT_TIME_CONSTANT, Seconds(0.001));
+/// filter.reset(SpecificForce::from_g(Vector3::y()));
+/// // A second of 90 °/s to the left, about the vertical.
+/// for _ in 0..1000 {
+///     let rate = AngularRate::from_dps(Vector3::new(0.8, 89.5, 0.3));
+///     let force = SpecificForce::from_g(Vector3::y());
+///     filter.update(&bias.correct(Sample { rate, force }));
+/// }
+/// let ahead = filter.orientation() * -Vector3::z();
+/// assert!((ahead + Vector3::x()).norm() < 1e-3);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Complementary<T: RealField> {
     derived: Derived<T>,
@@ -25,7 +45,9 @@ struct Derived<T> {
 }
 
 impl<T: RealField + Copy> Complementary<T> {
-    /// Starts from the identity, as the notes do (section 5.1).
+    /// Starts from the identity, as the notes do (section 5.1): a board that is not level is taken for
+    /// one that is, and needs some time constants to be found out. [`reset`](Self::reset) with the
+    /// first force levels it at once.
     pub fn new(time_constant: TimeConstant<T>, sample_period: Seconds<T>) -> Self {
         Self {
             derived: Derived {

@@ -21,6 +21,27 @@ use crate::units::{Angle, MagneticField, Seconds, SpecificForce};
 use nalgebra::{RealField, UnitQuaternion};
 
 /// The post's filter: its q̃_k, d and q̃′_k. The post has no equation numbers.
+///
+/// ```
+/// use vrduino::calibration::GyroBias;
+/// use vrduino::nalgebra::{UnitQuaternion, Vector3};
+/// use vrduino::orientation::drift::DriftCorrection;
+/// use vrduino::sensor::Sample;
+/// use vrduino::units::{AngularRate, MagneticField, Seconds, SpecificForce};
+///
+/// let mut filter = DriftCorrection::new(0.01, Seconds(0.01));
+/// // The gyro says that nothing turns, and the start is 40° off in heading.
+/// filter.set(UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 0.7));
+/// let (rate, force) = (AngularRate::zero(), SpecificForce::from_g(Vector3::y()));
+/// let reading = GyroBias::zero().correct(Sample { rate, force });
+/// // Facing north, with the field dipping below it.
+/// let field = MagneticField::from_microtesla(Vector3::new(0.0, -40.0, -20.0));
+/// for _ in 0..1000 {
+///     // None in place of the field wherever the magnetometer has nothing new.
+///     filter.update(&reading, Some(field));
+/// }
+/// assert!(filter.orientation().angle() < 1e-3);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct DriftCorrection<T: RealField> {
     sample_period: Seconds<T>,

@@ -10,7 +10,10 @@ use nalgebra::{RealField, UnitQuaternion, convert};
 
 /// q_Δ of eq. 17: the turn from this sample's body frame to that of the last one, for a body that
 /// turned at `rate` (body frame) for the whole of the period. The identity where eq. 17 divides zero
-/// by zero, at no rate, and for a turn that is not finite.
+/// by zero, at no rate, and for a turn that is not finite or whose square is not.
+///
+/// Any other turn, however many times round, is as exact as its angle is: to 1e-5 in `f32` up to
+/// twenty turns, after which the rounding of the angle itself is more.
 pub fn step<T: RealField + Copy>(rate: AngularRate<T>, period: Seconds<T>) -> UnitQuaternion<T> {
     from_half_angle(rate.rad_per_s() * (period.0 * convert(0.5)))
 }

@@ -41,9 +41,10 @@ fn series<T: RealField + Copy>(h: Vector3<T>, squared: T) -> UnitQuaternion<T> {
 }
 
 /// For angles larger than a sample's: a rotation is two of half its angle in a row. Every halving
-/// costs one bit of the angle's precision, 6 for half a turn.
-fn by_halving<T: RealField + Copy>(mut h: Vector3<T>) -> UnitQuaternion<T> {
+/// costs one bit of the angle's precision, 6 for half a turn, 7 for the most there is.
+fn by_halving<T: RealField + Copy>(h: Vector3<T>) -> UnitQuaternion<T> {
     let mut halvings = 0;
+    let mut h = within_a_turn(h);
     let mut squared = h.norm_squared();
     while squared >= convert(SMALL) {
         h *= convert::<f64, T>(0.5);
@@ -56,6 +57,22 @@ fn by_halving<T: RealField + Copy>(mut h: Vector3<T>) -> UnitQuaternion<T> {
         q = renormalised(q * q);
     }
     q
+}
+
+/// h with |h| ≤ π and the same sine and cosine, so the same quaternion to its sign. The remainder
+/// itself is exact: what it is off by is no more than |h| was rounded by.
+fn within_a_turn<T: RealField + Copy>(h: Vector3<T>) -> Vector3<T> {
+    let length = h.norm();
+    if length <= T::pi() {
+        return h;
+    }
+    let rest = length % T::two_pi();
+    let nearer = if rest > T::pi() {
+        rest - T::two_pi()
+    } else {
+        rest
+    };
+    h * (nearer / length)
 }
 
 /// Back to unit length, which rounding has left by a little (the notes' section 5.4 asks for it).

@@ -2,7 +2,7 @@
 //! to ST2 and ASAX to ASAZ; MPU-9250 product specification, orientation of axes).
 //!
 //! Eq. 5 of the course notes does not hold for it: with the notes' ±4800 µT it would give 0.1465 µT
-//! per count, 2.4 % below the data sheet's 0.15. Each axis has a sensitivity of its own besides, a
+//! per count, 2.3 % below the data sheet's 0.15. Each axis has a sensitivity of its own besides, a
 //! factor written into a fuse ROM at the factory.
 
 use crate::units::MagneticField;

@@ -2,10 +2,10 @@
 
 use super::Tracker;
 use super::estimators::Estimators;
-use crate::command::request::{Choice, Refusal, Request, Setting};
-use crate::fusion::{Fusion, Motion, Source};
+use crate::command::request::{Choice, Refusal, Request, Setting, UseCompass};
+use crate::fusion::{FieldVerdict, Fusion, Motion, Source};
 use crate::units::AngularRate;
-use crate::wire::{self, Line};
+use crate::wire::{self, Decimals, Line};
 
 impl Tracker {
     /// Does what a line asks for and says how it is now.
@@ -14,7 +14,7 @@ impl Tracker {
         match line {
             Err(refusal) => wire::text(format_args!("ERR {refusal}")),
             Ok(Request::Help) => wire::text(
-                "OK verbs: help version estimator get set defaults compass bias decimals",
+                "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals",
             ),
             Ok(Request::Version) => wire::text(concat!("OK vrduino ", env!("CARGO_PKG_VERSION"))),
             Ok(Request::Estimator(choice)) => {
@@ -30,14 +30,28 @@ impl Tracker {
             }
             Ok(Request::Defaults) => {
                 estimators.set_defaults();
+                self.decimals = Decimals::COURSE;
+                self.use_compass = UseCompass::default();
                 wire::text("OK defaults")
             }
-            Ok(Request::Compass(on)) => {
-                if let Some(on) = on {
-                    estimators.set_compass(on);
+            Ok(Request::Compass(choice)) => {
+                if let Some(choice) = choice {
+                    self.use_compass = choice;
                 }
-                let state = if estimators.compass() { "on" } else { "off" };
-                wire::text(format_args!("OK compass {state}"))
+                self.compass_state()
+            }
+            Ok(Request::Calibration) => self.calibration.state(),
+            Ok(Request::Keep(piece)) => self.calibration.take(&piece),
+            Ok(Request::KeepDone) => match self.calibration.finish() {
+                Ok(record) => {
+                    self.guess_bias(&record);
+                    self.calibration.state()
+                }
+                Err(error) => wire::text(format_args!("ERR done: {error}")),
+            },
+            Ok(Request::Forget) => {
+                self.calibration.forget();
+                self.calibration.state()
             }
             Ok(Request::Decimals(decimals)) => {
                 if let Some(decimals) = decimals {
@@ -46,6 +60,27 @@ impl Tracker {
                 wire::text(format_args!("OK decimals {}", self.decimals.get()))
             }
             Ok(Request::Bias) => bias(estimators),
+        }
+    }
+}
+
+impl Tracker {
+    /// The choice, and what it comes to.
+    fn compass_state(&self) -> Line {
+        let choice = match self.use_compass {
+            UseCompass::Auto => "auto",
+            UseCompass::On => "on",
+            UseCompass::Off => "off",
+        };
+        let state = match self.estimators.fusion().field_verdict() {
+            _ if !self.follows_compass() => "not used, the field is not calibrated",
+            FieldVerdict::Absent => "no field",
+            FieldVerdict::Undisturbed => "heading by compass",
+            FieldVerdict::Disturbed => "disturbed, heading by gyro",
+        };
+        match self.use_compass {
+            UseCompass::Off => wire::text("OK compass off"),
+            _ => wire::text(format_args!("OK compass {choice}: {state}")),
         }
     }
 }

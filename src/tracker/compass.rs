@@ -18,11 +18,11 @@ pub struct Compass {
     good: u32,
 }
 
-/// What a measurement was good for.
+/// What has come, and whether to tell of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The field, body frame; none if nothing came, or nothing that can be believed.
-    pub field: Option<MagneticField<f32>>,
+    /// The field, body frame, or why it is none; nothing if nothing came.
+    pub result: Option<Result<MagneticField<f32>, FieldError>>,
     /// Why it is none, when that begins.
     pub warning: Option<FieldError>,
 }
@@ -46,32 +46,29 @@ impl Compass {
 
     /// To be called with every sample of the IMU; mostly nothing has come.
     pub fn update(&mut self, raw: Option<RawField>) -> Measured {
-        let nothing = Measured {
-            field: None,
-            warning: None,
-        };
         let (Some(raw), Some(adjustment)) = (raw, self.adjustment) else {
-            return nothing;
+            return Measured {
+                result: None,
+                warning: None,
+            };
         };
         let field = raw.field(adjustment);
         self.last = Some(field);
         self.this_second = self.this_second.saturating_add(1);
-        match field {
-            Ok(field) => {
+        let warning = match field {
+            Ok(_) => {
                 self.good = self.good.saturating_add(1);
-                Measured {
-                    field: Some(field),
-                    ..nothing
-                }
+                None
             }
             Err(error) => {
                 let begins = self.good >= GOOD_AGAIN;
                 self.good = 0;
-                Measured {
-                    warning: begins.then_some(error),
-                    ..nothing
-                }
+                begins.then_some(error)
             }
+        };
+        Measured {
+            result: Some(field),
+            warning,
         }
     }
 

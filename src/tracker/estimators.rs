@@ -23,7 +23,6 @@ pub struct Estimators {
     notes_time: TimeConstant<f32>,
     /// What the notes' filter takes off, as their section 2 has it: measured once.
     notes_bias: GyroBias<f32>,
-    compass: bool,
 }
 
 impl Default for Estimators {
@@ -40,7 +39,6 @@ impl Default for Estimators {
             notes: Complementary::new(DEFAULT_TIME_CONSTANT, SAMPLE_PERIOD),
             notes_time: DEFAULT_TIME_CONSTANT,
             notes_bias: GyroBias::zero(),
-            compass: true,
         }
     }
 }
@@ -50,7 +48,7 @@ impl Estimators {
     pub fn update(&mut self, sample: &Sample<f32>, field: Option<MagneticField<f32>>) {
         match self.choice {
             Choice::Default => {
-                self.fusion.update(sample, field.filter(|_| self.compass));
+                self.fusion.update(sample, field);
             }
             Choice::Notes => {
                 self.notes.update(&self.notes_bias.correct(*sample));
@@ -83,6 +81,12 @@ impl Estimators {
     pub fn set_bias(&mut self, at_rest: AngularRate<f32>) {
         self.fusion.set_bias(at_rest);
         self.notes_bias = GyroBias::new(at_rest);
+    }
+
+    /// A bias from another day: better than none until one is measured.
+    pub fn guess_bias(&mut self, rate: AngularRate<f32>) {
+        self.fusion.guess_bias(rate);
+        self.notes_bias = GyroBias::new(rate);
     }
 
     /// Heading 0 and the tilt this force (body frame) shows.
@@ -124,16 +128,6 @@ impl Estimators {
         &self.fusion
     }
 
-    /// Whether the heading may follow the compass.
-    pub fn compass(&self) -> bool {
-        self.compass
-    }
-
-    /// Lets it, or not.
-    pub fn set_compass(&mut self, on: bool) {
-        self.compass = on;
-    }
-
     /// In the unit and range of the setting.
     pub fn get(&self, setting: Setting) -> f32 {
         match setting {
@@ -163,12 +157,11 @@ impl Estimators {
         self.fusion.tune(&self.parameters);
     }
 
-    /// All settings as they were at the start, the default estimator, the compass on.
+    /// All settings as they were at the start, and the default estimator.
     pub fn set_defaults(&mut self) {
         self.parameters = Parameters::default();
         self.fusion.tune(&self.parameters);
         self.set_notes(DEFAULT_TIME_CONSTANT);
-        self.compass = true;
         self.choose(Choice::Default);
     }
 

@@ -1,6 +1,6 @@
 //! The sliding average (section 3.2.3) of the last n samples.
 
-use super::fields::Fields;
+use super::fields::{Fields, NoAttitude};
 use heapless::HistoryBuf;
 use nalgebra::{RealField, Vector3, convert};
 
@@ -23,7 +23,16 @@ impl<T: RealField + Copy, const N: usize> SlidingAverage<T, N> {
     }
 
     /// One sample. None until the window is full.
-    pub fn update(&mut self, sample: Fields<T>) -> Option<Fields<T>> {
+    ///
+    /// # Errors
+    ///
+    /// [`NoAttitude::NotFinite`]; the sample is left out.
+    pub fn update(&mut self, sample: Fields<T>) -> Result<Option<Fields<T>>, NoAttitude> {
+        Ok(self.take(sample.plausible()?))
+    }
+
+    /// The same of a sample that is known to be one.
+    pub(super) fn take(&mut self, sample: Fields<T>) -> Option<Fields<T>> {
         self.window.write(sample);
         if !self.window.is_full() {
             return None;

@@ -6,7 +6,7 @@
 //!           1 + a₁ z⁻¹
 //! ```
 
-use super::fields::Fields;
+use super::fields::{Fields, NoAttitude};
 use nalgebra::{RealField, convert};
 
 /// A cut-off frequency F_c as a fraction of the sampling frequency F_e, above 0 and below ½.
@@ -90,7 +90,12 @@ impl<T: RealField + Copy> LowPass<T> {
     }
 
     /// One sample in, one out.
-    pub fn update(&mut self, input: Fields<T>) -> Fields<T> {
+    ///
+    /// # Errors
+    ///
+    /// [`NoAttitude::NotFinite`]; the sample is left out.
+    pub fn update(&mut self, input: Fields<T>) -> Result<Fields<T>, NoAttitude> {
+        let input = input.plausible()?;
         let last = self.last.unwrap_or(Last {
             input,
             output: input,
@@ -101,6 +106,6 @@ impl<T: RealField + Copy> LowPass<T> {
             magnetic: input.magnetic * b0 + last.input.magnetic * b1 - last.output.magnetic * a1,
         };
         self.last = Some(Last { input, output });
-        output
+        Ok(output)
     }
 }

@@ -8,6 +8,10 @@ use nalgebra::{RealField, Rotation3, Vector3, convert};
 /// the accelerometer's own zero be off by as much.
 const FREE_FALL_G: f64 = 0.06;
 
+/// No accelerometer and no magnetometer reads as much, whatever its unit; and the squares of
+/// smaller numbers are finite.
+const IMPLAUSIBLE: f64 = 1e9;
+
 /// The earth's two fields where the device is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Earth<T> {
@@ -56,6 +60,18 @@ impl<T: RealField + Copy> Fields<T> {
         Self {
             gravity: -force.m_per_s2(),
             magnetic: magnetic.microtesla(),
+        }
+    }
+
+    /// The sample itself, if a sensor can have read it: what the filters take in. One number that is
+    /// not finite would stay in a recursive filter for ever.
+    pub(super) fn plausible(self) -> Result<Self, NoAttitude> {
+        let mut components = self.gravity.iter().chain(self.magnetic.iter());
+        // Not a number is not below it either.
+        if components.all(|component| component.abs() < convert(IMPLAUSIBLE)) {
+            Ok(self)
+        } else {
+            Err(NoAttitude::NotFinite)
         }
     }
 

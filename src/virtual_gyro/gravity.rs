@@ -6,11 +6,7 @@ use super::cut_off::AdaptiveCutOff;
 use super::fields::{Fields, NoAttitude};
 use super::median::MedianByNorm;
 use super::{butterworth::CutOff, cut_off};
-use nalgebra::{RealField, convert};
-
-/// No accelerometer and no magnetometer reads as much, whatever its unit; and the squares of
-/// smaller numbers are finite.
-const IMPLAUSIBLE: f64 = 1e9;
+use nalgebra::RealField;
 
 /// The three filters in a row, for a median over MEDIAN samples (odd) and an average over MEAN.
 ///
@@ -55,15 +51,11 @@ impl<T: RealField + Copy, const MEDIAN: usize, const MEAN: usize>
     ///
     /// [`NoAttitude::NotFinite`]; the sample is left out.
     pub fn update(&mut self, sample: Fields<T>) -> Result<Option<Fields<T>>, NoAttitude> {
-        let mut components = sample.gravity.iter().chain(sample.magnetic.iter());
-        if !components.all(|component| component.abs() < convert(IMPLAUSIBLE)) {
-            return Err(NoAttitude::NotFinite);
-        }
-        let smooth = self.low_pass.update(sample);
-        let Some(median) = self.median.update(smooth) else {
+        let smooth = self.low_pass.update(sample)?;
+        let Some(median) = self.median.take(smooth) else {
             return Ok(None);
         };
-        let Some(gravity) = self.average.update(median) else {
+        let Some(gravity) = self.average.take(median) else {
             return Ok(None);
         };
         if let Some(adaptive) = &mut self.adaptive {

@@ -1,7 +1,8 @@
 //! The sliding median (section 3.2.2): of the last n samples, the one with the median norm of
-//! gravity. Samples whose norm is an outlier never come out.
+//! gravity. Samples whose norm is an outlier never come out; in figure 4, though, the low-pass comes
+//! before and makes a swell of each, which no window is long enough for.
 
-use super::fields::Fields;
+use super::fields::{Fields, NoAttitude};
 use core::cmp::Ordering;
 use heapless::HistoryBuf;
 use nalgebra::RealField;
@@ -35,7 +36,16 @@ impl<T: RealField + Copy, const N: usize> MedianByNorm<T, N> {
     }
 
     /// One sample. None until the window is full.
-    pub fn update(&mut self, sample: Fields<T>) -> Option<Fields<T>> {
+    ///
+    /// # Errors
+    ///
+    /// [`NoAttitude::NotFinite`]; the sample is left out.
+    pub fn update(&mut self, sample: Fields<T>) -> Result<Option<Fields<T>>, NoAttitude> {
+        Ok(self.take(sample.plausible()?))
+    }
+
+    /// The same of a sample that is known to be one.
+    pub(super) fn take(&mut self, sample: Fields<T>) -> Option<Fields<T>> {
         self.window.write(sample);
         if !self.window.is_full() {
             return None;
@@ -44,6 +54,7 @@ impl<T: RealField + Copy, const N: usize> MedianByNorm<T, N> {
         for (place, sample) in ranked.iter_mut().zip(self.window.oldest_ordered()) {
             *place = (sample.gravity.norm(), *sample);
         }
+        // Finite norms are in order: `plausible` lets no others in.
         ranked.sort_unstable_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(Ordering::Equal));
         ranked.get(N / 2).map(|&(_, sample)| sample)
     }

@@ -44,6 +44,30 @@ pub struct Estimate<T: RealField> {
 }
 
 /// The virtual gyroscope, with a median over MEDIAN (odd) and an average over MEAN samples.
+///
+/// ```
+/// use vrduino::frames::axes::Axes;
+/// use vrduino::nalgebra::Vector3;
+/// use vrduino::units::{MagneticField, Seconds, SpecificForce};
+/// use vrduino::virtual_gyro::{Method, NoEstimate, Settings, VirtualGyro};
+///
+/// let sample_period = Seconds(0.01);
+/// let mut gyro = VirtualGyro::<f32, 5, 5>::new(Settings { sample_period, method: Method::Matrix });
+/// // What the board's sensors read while it lies level and faces north, y up.
+/// let (force, field) = (Vector3::new(0.0, 9.81, 0.0), Vector3::new(0.0, -40.0, -20.0));
+/// let north_east_down = |v| Axes::NorthEastDown.from_y_up(v);
+/// for k in 0..20 {
+///     let force = SpecificForce::from_m_per_s2(north_east_down(force));
+///     let field = MagneticField::from_microtesla(north_east_down(field));
+///     match gyro.update(force, Some(field)) {
+///         Ok(estimate) => {
+///             let board = Axes::NorthEastDown.orientation_to_y_up(estimate.orientation);
+///             assert!(board.angle() < 1e-3);
+///         }
+///         Err(reason) => assert!(reason == NoEstimate::Filling && k < 8),
+///     }
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct VirtualGyro<T: RealField + Copy, const MEDIAN: usize, const MEAN: usize> {
     settings: Settings<T>,
@@ -77,7 +101,11 @@ impl<T: RealField + Copy, const MEDIAN: usize, const MEAN: usize> VirtualGyro<T,
         }
     }
 
-    /// One sample of both sensors, axes aligned, in the device frame.
+    /// One sample of both sensors, axes aligned, in the device frame: x ahead, y to the right, z
+    /// **down**. From this crate's own body frame, y up, leads
+    /// [`Axes::from_y_up`](crate::frames::axes::Axes::from_y_up) of `Axes::NorthEastDown`, and back
+    /// [`Axes::to_y_up`](crate::frames::axes::Axes::to_y_up) and
+    /// [`Axes::orientation_to_y_up`](crate::frames::axes::Axes::orientation_to_y_up).
     ///
     /// It is to be called once each sample period. The filters want both readings of the same
     /// instant: with a slower magnetometer, call at its pace. Where there is no new reading, pass

@@ -19,6 +19,9 @@ pub const Z: [f64; 3] = [0.0, 0.0, 1.0];
 /// 0.11° in the worst case.
 pub const PRINTED: f64 = 0.11;
 
+/// What is typed for six decimals.
+pub const SIX_DECIMALS: &[u8] = b":decimals 6\n";
+
 pub fn image() -> Image {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
     let path = PATH.get_or_init(|| {
@@ -77,6 +80,13 @@ impl Run {
                 self.read += end + 1;
             }
         }
+    }
+
+    /// Boots for a second, asks for six decimals, and goes on.
+    pub fn with_six_decimals(&mut self, seconds: f64) {
+        self.seconds(1.0);
+        self.board.chip().host.send(SIX_DECIMALS);
+        self.seconds(seconds);
     }
 
     /// Forgets the text so far, to wait for something new.

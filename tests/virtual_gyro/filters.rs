@@ -3,11 +3,11 @@
 use crate::reference::*;
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
-use vrduino::virtual_gyro::Fields;
 use vrduino::virtual_gyro::average::SlidingAverage;
 use vrduino::virtual_gyro::butterworth::{Coefficients, CutOff, LowPass};
 use vrduino::virtual_gyro::cut_off::AdaptiveCutOff;
 use vrduino::virtual_gyro::median::MedianByNorm;
+use vrduino::virtual_gyro::{Fields, NoAttitude};
 
 /// As printed, for F_c = 0.02 F_e.
 const PRINTED: Coefficients<f64> = Coefficients {
@@ -82,7 +82,9 @@ fn the_filter_passes_a_wave_of_the_cut_off_frequency_at_one_over_root_two() {
         let mut filter = LowPass::new(CutOff::new(fraction).unwrap());
         let mut squares = 0.0;
         for k in 0..4000 {
-            let y = filter.update(along_x((TAU * fraction * f64::from(k)).sin()));
+            let y = filter
+                .update(along_x((TAU * fraction * f64::from(k)).sin()))
+                .unwrap();
             if k >= 3000 {
                 squares += y.gravity.x * y.gravity.x;
             }
@@ -97,11 +99,11 @@ fn the_filter_passes_a_wave_of_the_cut_off_frequency_at_one_over_root_two() {
 fn the_step_response_is_the_closed_form() {
     for fraction in [0.02, 0.1, 0.25, 0.4] {
         let mut filter = LowPass::new(CutOff::new(fraction).unwrap());
-        filter.update(along_x(0.0));
+        filter.update(along_x(0.0)).unwrap();
         let tan = (TAU * fraction / 2.0).tan();
         let (b, pole) = (tan / (1.0 + tan), (1.0 - tan) / (1.0 + tan));
         for n in 0..200 {
-            let y = filter.update(along_x(1.0));
+            let y = filter.update(along_x(1.0)).unwrap();
             let expected = 1.0 - (1.0 - b) * pole.powi(n);
             assert!((y.gravity.x - expected).abs() < 1e-12);
             assert!((y.magnetic.y - expected).abs() < 1e-12);
@@ -114,7 +116,7 @@ fn a_change_of_coefficients_leaves_a_settled_output_where_it_is() {
     let mut filter = LowPass::new(CutOff::new(0.02).unwrap());
     for k in 0..300 {
         filter.set_cut_off(CutOff::new(0.02 + 0.38 * f64::from(k % 8) / 7.0).unwrap());
-        let y = filter.update(along_x(9.81));
+        let y = filter.update(along_x(9.81)).unwrap();
         assert!((y.gravity.x - 9.81).abs() < 1e-12);
     }
 }
@@ -171,7 +173,7 @@ fn the_median_is_the_sample_with_as_many_shorter_as_longer() {
             magnetic: Vector3::new(f64::from(k), 0.0, 0.0),
         };
         all.push(sample);
-        let found = filter.update(sample);
+        let found = filter.update(sample).unwrap();
         assert_eq!(found.is_some(), k >= 6);
         let Some(found) = found else { continue };
         let window = &all[all.len() - 7..];
@@ -191,7 +193,7 @@ fn outliers_do_not_pass_the_median() {
             gravity: Vector3::new(0.0, 0.0, 9.81) * spike,
             magnetic: Vector3::x(),
         };
-        if let Some(found) = filter.update(sample) {
+        if let Some(found) = filter.update(sample).unwrap() {
             assert_eq!(found.gravity.z, 9.81);
         }
     }
@@ -209,6 +211,7 @@ fn the_average_is_the_mean_of_the_window() {
             gravity: vector(v),
             magnetic: vector(v.map(|x| 2.0 * x)),
         });
+        let found = found.unwrap();
         assert_eq!(found.is_some(), k >= 3);
         let Some(found) = found else { continue };
         let mean = [0, 1, 2].map(|i| all[all.len() - 4..].iter().map(|v| v[i]).sum::<f64>() / 4.0);
@@ -224,10 +227,8 @@ fn median_and_average_of_n_delay_by_half_of_n_minus_1() {
     let mut by_median = None;
     for k in 0..50 {
         let now = f64::from(k);
-        for found in [median.update(along_x(now)), average.update(along_x(now))]
-            .into_iter()
-            .flatten()
-        {
+        let found = [median.update(along_x(now)), average.update(along_x(now))];
+        for found in found.into_iter().filter_map(Result::unwrap) {
             assert_eq!(now - found.gravity.x, 2.0, "printed: n − 1 = 4");
             assert_eq!(now - found.magnetic.y, 2.0);
             by_median = Some(now);
@@ -238,7 +239,49 @@ fn median_and_average_of_n_delay_by_half_of_n_minus_1() {
     let mut median = MedianByNorm::<f64, 5>::new();
     let shown = (0..20).position(|k| {
         let found = median.update(along_x(if k >= 10 { 1.0 } else { 0.0 }));
-        found.is_some_and(|found| found.gravity.x == 1.0)
+        found.unwrap().is_some_and(|found| found.gravity.x == 1.0)
     });
     assert_eq!(shown, Some(12));
+}
+
+/// What no sensor reads: it would stay in a recursive filter for ever, overflow a sum, or have no
+/// place among norms.
+const IMPOSSIBLE: [f32; 5] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1e9];
+
+/// Feeds one filter broken samples between good ones, and another the good ones alone.
+fn leaves_out<F: Clone, R: PartialEq + std::fmt::Debug>(
+    filter: F,
+    update: impl Fn(&mut F, Fields<f32>) -> Result<R, NoAttitude>,
+) {
+    let (mut disturbed, mut undisturbed) = (filter.clone(), filter);
+    for k in 0..300_usize {
+        let good = Fields {
+            gravity: Vector3::new(k as f32 % 7.0, k as f32 % 5.0, 9.81),
+            magnetic: Vector3::new(20.0, k as f32 % 3.0, 40.0),
+        };
+        let mut broken = good;
+        let field = if k % 2 == 0 {
+            &mut broken.gravity
+        } else {
+            &mut broken.magnetic
+        };
+        field[k % 3] = IMPOSSIBLE[k % 5];
+        assert_eq!(update(&mut disturbed, broken), Err(NoAttitude::NotFinite));
+        assert_eq!(update(&mut disturbed, good), update(&mut undisturbed, good));
+    }
+}
+
+#[test]
+fn each_filter_leaves_out_what_no_sensor_reads() {
+    for fraction in [0.02, 0.4] {
+        leaves_out(
+            LowPass::new(CutOff::new(fraction).unwrap()),
+            LowPass::update,
+        );
+    }
+    leaves_out(MedianByNorm::<f32, 5>::new(), MedianByNorm::update);
+    // From 21 on a sort notices that an order is none.
+    leaves_out(MedianByNorm::<f32, 21>::new(), MedianByNorm::update);
+    leaves_out(MedianByNorm::<f32, 101>::new(), MedianByNorm::update);
+    leaves_out(SlidingAverage::<f32, 4>::new(), SlidingAverage::update);
 }

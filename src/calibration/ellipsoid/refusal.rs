@@ -2,6 +2,7 @@
 
 use super::{LARGEST_ERROR_PERCENT, STRONGEST, WEAKEST};
 use crate::calibration::coverage::Coverage;
+use crate::decimal::{Decimal, rounded};
 use core::fmt;
 use nalgebra::{RealField, convert};
 
@@ -79,23 +80,29 @@ impl<T: RealField + Copy> fmt::Display for Refusal<T> {
                 };
                 write!(
                     f,
-                    "{:.0} % of all directions seen, largest hole {:.0} degrees: turn the board until the field comes from {sign}{}",
-                    coverage.share * convert(100.0),
-                    coverage.largest_hole.degrees(),
+                    "{} % of all directions seen, largest hole {} degrees: turn the board until the field comes from {sign}{}",
+                    rounded(coverage.share * convert(100.0), 0),
+                    rounded(coverage.largest_hole.degrees(), 0),
                     ['x', 'y', 'z'][axis]
                 )
             }
             Self::Strength(microtesla) => write!(
                 f,
-                "{microtesla:.0} uT is not the earth's field ({WEAKEST} to {STRONGEST}): move away from iron, check the scale"
+                "{} uT is not the earth's field ({} to {}): move away from iron, check the scale",
+                rounded(*microtesla, 0),
+                Decimal(WEAKEST as f32, 0),
+                Decimal(STRONGEST as f32, 0)
             ),
             Self::Lopsided(ratio) => write!(
                 f,
-                "one axis reads {ratio:.2} times another: take iron off the board, or the part is broken"
+                "one axis reads {} times another: take iron off the board, or the part is broken",
+                rounded(*ratio, 2)
             ),
             Self::Disturbed(percent) => write!(
                 f,
-                "field varies by {percent:.1} %, {LARGEST_ERROR_PERCENT} allowed: turn the board on the spot, away from iron"
+                "field varies by {} %, {} allowed: turn the board on the spot, away from iron",
+                rounded(*percent, 1),
+                Decimal(LARGEST_ERROR_PERCENT as f32, 0)
             ),
         }
     }

@@ -1,6 +1,7 @@
 //! Why six positions are not accepted, and what to do about it.
 
 use super::{Faces, LARGEST_PLACING_DEGREES, LARGEST_RESIDUAL};
+use crate::decimal::{Decimal, rounded};
 use crate::units::Angle;
 use core::fmt;
 use nalgebra::RealField;
@@ -50,25 +51,28 @@ impl<T: RealField + Copy> fmt::Display for Refusal<T> {
                 write!(f, "not still long enough with {faces}: lay the board so for three seconds each")
             }
             Self::Warming(change) => {
-                write!(f, "the sensor's temperature changed by {change:.0} C: let it run ten minutes first")
+                let change = Decimal(*change, 0);
+                write!(f, "the sensor's temperature changed by {change} C: let it run ten minutes first")
             }
             Self::NoFit => f.write_str(
                 "no bias and scale fit these forces: lay each face down again, on a table that stands",
             ),
             Self::Residual(rms) => {
-                write!(f, "{rms:.3} m/s2 left over, more than {LARGEST_RESIDUAL}: repeat on a table that stands")
+                let (rms, most) = (rounded(*rms, 3), Decimal(LARGEST_RESIDUAL as f32, 2));
+                write!(f, "{rms} m/s2 left over, more than {most}: repeat on a table that stands")
             }
             Self::Scale { axis: a, percent } => {
-                let a = axis(a);
-                write!(f, "{a} reads {percent:.1} % off, data sheet 3 %: check the range setting, or the part is broken")
+                let (a, percent) = (axis(a), rounded(*percent, 1));
+                write!(f, "{a} reads {percent} % off, data sheet 3 %: check the range setting, or the part is broken")
             }
             Self::Bias { axis: a, m_per_s2 } => {
-                let a = axis(a);
-                write!(f, "{a} is off by {m_per_s2:.2} m/s2, data sheet 0.8: repeat, or the part is broken")
+                let (a, m_per_s2) = (axis(a), rounded(*m_per_s2, 2));
+                write!(f, "{a} is off by {m_per_s2} m/s2, data sheet 0.8: repeat, or the part is broken")
             }
             Self::Placing(angle) => {
-                let degrees = angle.degrees();
-                write!(f, "placed {degrees:.1} degrees off, {LARGEST_PLACING_DEGREES} allowed: use a true block, or no cross-axis terms")
+                let degrees = rounded(angle.degrees(), 1);
+                let most = Decimal(LARGEST_PLACING_DEGREES as f32, 1);
+                write!(f, "placed {degrees} degrees off, {most} allowed: use a true block, or no cross-axis terms")
             }
         }
     }
