@@ -43,7 +43,7 @@ use clock::Time;
 use imu::Imu;
 use led::Led;
 use loader::Loader;
-use store::{Store, StoreError};
+use store::Store;
 use usb::Usb;
 use watchdog::Watchdog;
 
@@ -107,11 +107,10 @@ impl Board {
         self.calibration.load()
     }
 
-    /// Begins to keep a calibration, which takes a word a turn: 40 ms or so. The host is told how it
-    /// went.
-    #[allow(dead_code, reason = "for the commands that calibrate")]
-    pub fn keep_calibration(&mut self, record: &Record) -> Result<(), StoreError> {
-        self.calibration.keep(record)
+    /// Keeps a calibration over power cycles, a word in each turn: 40 ms or so. The host is told how
+    /// it went.
+    pub fn keep_calibration(&mut self, record: &Record) {
+        self.calibration.keep(record);
     }
 
     /// Finds the sensor, sets it up and starts sampling. Returns what the factory found out about its

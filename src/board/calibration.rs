@@ -32,6 +32,7 @@ impl fmt::Display for Trouble {
 pub struct Calibration {
     store: Store,
     trouble: Option<Trouble>,
+    next: Option<Record>,
 }
 
 impl Calibration {
@@ -40,6 +41,7 @@ impl Calibration {
         Calibration {
             store,
             trouble: None,
+            next: None,
         }
     }
 
@@ -59,14 +61,24 @@ impl Calibration {
             .ok()
     }
 
-    /// Begins to keep `record`.
-    pub fn keep(&mut self, record: &Record) -> Result<(), StoreError> {
-        self.store.save(&record.to_bytes())
+    /// To be kept next, in the place of any other that has not begun to be.
+    pub fn keep(&mut self, record: &Record) {
+        self.next = Some(*record);
     }
 
-    /// Goes on with it. Returns what the host is told once it has ended. `now` is in milliseconds.
+    /// Goes on with it. Returns what the host is told once it has ended. To be called once in each turn
+    /// of the main program; `now` is in milliseconds.
     pub fn serve(&mut self, now: u32) -> Option<Line> {
-        Some(match self.store.serve(now)? {
+        let end = if self.store.is_saving() {
+            self.store.serve(now)?
+        } else {
+            let record = self.next.take()?;
+            match self.store.save(&record.to_bytes()) {
+                Ok(()) => return None,
+                error => error,
+            }
+        };
+        Some(match end {
             Ok(()) => {
                 self.trouble = None;
                 wire::text("calibration kept")

@@ -152,6 +152,11 @@ impl Store {
         Ok(())
     }
 
+    /// Whether a save is under way.
+    pub fn is_saving(&self) -> bool {
+        self.saving.is_some()
+    }
+
     /// Goes on with a save, if there is one, and tells how it ended. To be called once in each turn of
     /// the main program; `now` is in milliseconds.
     pub fn serve(&mut self, now: u32) -> Option<Result<(), StoreError>> {

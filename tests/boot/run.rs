@@ -42,12 +42,8 @@ pub struct Run {
 
 impl Run {
     pub fn with(setup: Setup) -> Run {
-        Run::of(image(), setup)
-    }
-
-    pub fn of(image: Image, setup: Setup) -> Run {
         Run {
-            board: Board::new(image, setup),
+            board: Board::new(image(), setup),
             text: String::new(),
             read: 0,
             orientations: Vec::new(),
