@@ -10,6 +10,8 @@
 
 pub mod breadcrumb;
 
+pub mod calibration;
+
 pub mod clock;
 
 pub mod i2c;
@@ -20,12 +22,15 @@ pub mod led;
 
 pub mod loader;
 
+pub mod store;
+
 pub mod usb;
 
 pub mod watchdog;
 
 use cortex_m::peripheral::NVIC;
 use mk20dx_hal::pac;
+use vrduino::calibration::record::Record;
 use vrduino::imu::magnetometer::MagnetometerError;
 use vrduino::sensor::RawSample;
 use vrduino::sensor::magnetometer::{RawField, SensitivityAdjustment};
@@ -33,10 +38,12 @@ use vrduino::tracker::Health;
 use vrduino::wire;
 
 use breadcrumb::Stage;
+use calibration::Calibration;
 use clock::Time;
 use imu::Imu;
 use led::Led;
 use loader::Loader;
+use store::Store;
 use usb::Usb;
 use watchdog::Watchdog;
 
@@ -47,6 +54,7 @@ pub struct Board {
     /// The serial port.
     pub usb: Usb,
     imu: Imu,
+    calibration: Calibration,
     led: Led,
     loader: Loader,
     time: Time,
@@ -66,6 +74,12 @@ impl Board {
         let last_life = breadcrumb::LastLife::read(&chip.rcm);
         breadcrumb::mark(Stage::Clocks);
         let clocks = clock::start(core.DCB, core.DWT, chip.mcg, chip.osc, &chip.sim);
+        let mut watchdog = Watchdog::new(chip.wdog);
+        // Before USB and sampling: on a new chip it takes a while. What hung once is not tried again.
+        let hung = last_life.is_some_and(|life| life.was_at(Stage::Partitioning));
+        watchdog.feed();
+        let store = Store::new(chip.ftfl, &chip.sim, !hung);
+        watchdog.feed();
         let led = Led::new(chip.portc, chip.ptc, &chip.sim);
         breadcrumb::mark(Stage::UsbStart);
         let usb = Usb::new(chip.usb0, &chip.sim);
@@ -75,15 +89,28 @@ impl Board {
         Board {
             usb,
             imu,
+            calibration: Calibration::new(store),
             led,
             loader: Loader::default(),
             time: Time,
-            watchdog: Watchdog::new(chip.wdog),
+            watchdog,
             last_life,
             fault: None,
             no_compass: None,
             introduced: false,
         }
+    }
+
+    /// The calibration that was kept last, if there is one that is whole. To be called at start; what
+    /// is wrong with it is told when the port is opened.
+    pub fn load_calibration(&mut self) -> Option<Record> {
+        self.calibration.load()
+    }
+
+    /// Keeps a calibration over power cycles, a word in each turn: 40 ms or so. The host is told how
+    /// it went.
+    pub fn keep_calibration(&mut self, record: &Record) {
+        self.calibration.keep(record);
     }
 
     /// Finds the sensor, sets it up and starts sampling. Returns what the factory found out about its
@@ -130,6 +157,7 @@ impl Board {
     /// Ends a turn of the main loop that went well.
     pub fn end_of_turn(&mut self) {
         self.watchdog.feed();
+        self.go_on_keeping();
         self.led.heartbeat(clock::milliseconds());
         self.loader
             .serve(self.usb.loader_asked(), clock::milliseconds());
@@ -151,6 +179,7 @@ impl Board {
         while until.wrapping_sub(clock::milliseconds()) as i32 > 0 {
             self.time.sleep_for_a_tick();
             self.watchdog.feed();
+            self.go_on_keeping();
             self.led.distress(clock::milliseconds());
             self.loader
                 .serve(self.usb.loader_asked(), clock::milliseconds());
@@ -165,6 +194,12 @@ impl Board {
         }
     }
 
+    fn go_on_keeping(&mut self) {
+        if let Some(end) = self.calibration.serve(clock::milliseconds()) {
+            self.usb.send(&end);
+        }
+    }
+
     /// Says who is speaking, and how the program before this one ended if that was not by power.
     fn introduce(&mut self) {
         self.usb
@@ -172,6 +207,9 @@ impl Board {
         if let Some(last_life) = self.last_life {
             self.usb
                 .send(&wire::text(format_args!("warning: {last_life}")));
+        }
+        if let Some(trouble) = self.calibration.trouble() {
+            self.usb.send(&trouble);
         }
         self.introduced = true;
         self.tell_of_compass();

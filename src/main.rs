@@ -27,6 +27,9 @@ const RETRY_MS: u32 = 1000;
 fn main() -> ! {
     let mut board = Board::take();
     let mut tracker = Tracker::new(RANGES);
+    if let Some(record) = board.load_calibration() {
+        tracker.set_calibration(&record);
+    }
     loop {
         let Err(fault) = track(&mut board, &mut tracker);
         board.report(fault);
@@ -45,6 +48,9 @@ fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> 
         let (sample, field) = board.next_sample()?;
         while let Some(command) = board.usb.command() {
             tracker.command(command, &mut |line| board.usb.send(line));
+        }
+        if let Some(record) = tracker.take_calibration_to_keep() {
+            board.keep_calibration(&record);
         }
         breadcrumb::mark(Stage::Filter);
         let health = board.health();

@@ -20,3 +20,6 @@ mod faults;
 
 #[path = "boot/magnetometer.rs"]
 mod magnetometer;
+
+#[path = "boot/store.rs"]
+mod store;

@@ -28,6 +28,7 @@ use crate::cpu::{Cpu, Pace, PeripheralBus, RAM_BASE};
 use crate::image::Image;
 use crate::journal::Happening;
 use crate::mpu9250::Mpu9250;
+use crate::peripherals::ftfl::Eeprom;
 use crate::peripherals::rcm::Cause;
 use crate::time::Ticks;
 use crate::witness::{Stop, Trap};
@@ -82,7 +83,7 @@ impl Board {
     /// A board at power-on with `image` in its flash.
     pub fn new(image: Image, setup: Setup) -> Board {
         let sensor = Mpu9250::new(Arc::from(setup.motion), setup.part);
-        let chip = Chip::new(sensor, &image.flash);
+        let chip = Chip::new(sensor, &image.flash, &setup.eeprom);
         let ram = chip.ram.clone();
         let core_hz = chip.core_hz();
         let shared = Arc::new(Shared::new(chip));
@@ -283,6 +284,10 @@ impl Board {
         chip.reset(cause);
         self.core_hz = chip.core_hz();
         self.flash_ratio = chip.flash_ratio();
+        // The reset has ended the command that hid it.
+        if std::mem::take(&mut self.flash_hidden) {
+            self.cpu.show_flash(Some(&chip.flash.memory.program));
+        }
         drop(chip);
         self.cpu.reset();
         self.tell_watchers(Some(Happening::Reset));
@@ -309,6 +314,11 @@ impl Board {
     /// next event, which is a frame away at most.
     pub fn chip_quietly(&mut self) -> MutexGuard<'_, Chip> {
         self.shared.chip()
+    }
+
+    /// What the EEPROM would hold if power failed now, to be given to the next board.
+    pub fn eeprom(&self) -> Eeprom {
+        self.shared.chip().flash.eeprom()
     }
 
     /// Makes the program continue at `address`, awake.

@@ -32,7 +32,7 @@ use crate::mpu9250::Mpu9250;
 use crate::peripherals::crc::CrcGenerator;
 use crate::peripherals::dma::Dma;
 use crate::peripherals::dmamux::DmaMux;
-use crate::peripherals::ftfl::{FlashController, Memory};
+use crate::peripherals::ftfl::{Eeprom, FlashController, Memory};
 use crate::peripherals::i2c::I2c;
 use crate::peripherals::mcg::ClockGenerator;
 use crate::peripherals::mcm::MiscellaneousControl;
@@ -104,8 +104,11 @@ pub struct Chip {
 }
 
 impl Chip {
-    /// The chip at power-on with `program` in its flash.
-    pub fn new(sensor: Mpu9250, program: &[u8]) -> Chip {
+    /// The chip at power-on with `program` in its flash and `eeprom` in its EEPROM.
+    pub fn new(sensor: Mpu9250, program: &[u8], eeprom: &Eeprom) -> Chip {
+        let memory = Memory::new(program).with_eeprom(eeprom);
+        let mut sim = SystemIntegration::new();
+        sim.set_partition(memory.configuration());
         let clocks = ClockGenerator::new();
         let bus_hz = clocks.output_hz(0);
         Chip {
@@ -119,12 +122,12 @@ impl Chip {
             watchdog: Watchdog::new(0, bus_hz, 0),
             watchdog_resets: 0,
             clocks,
-            sim: SystemIntegration::new(),
+            sim,
             arbitration: MiscellaneousControl::default(),
             timer: IntervalTimer::new(),
             clock_change: 0,
             reset_control: ResetControl::new(Cause::PowerOn),
-            flash: FlashController::new(Memory::new(program)),
+            flash: FlashController::new(memory, 0),
             analog: Analog::new(),
             timers: Timers::new(),
             communication: Communication::new(),
@@ -167,7 +170,7 @@ impl Chip {
         self.arbitration = MiscellaneousControl::default();
         self.timer = IntervalTimer::new();
         self.reset_control = ResetControl::new(cause);
-        self.flash.reset();
+        self.flash.reset(self.now);
         self.sim.set_partition(self.flash.memory.configuration());
         self.analog.reset();
         self.timers.reset();

@@ -29,10 +29,12 @@ pub enum Stage {
     UsbInterrupt,
     /// In one of the sampling interrupts.
     SamplingInterrupt,
+    /// Making the EEPROM.
+    Partitioning,
 }
 
 impl Stage {
-    const ALL: [(Stage, &str); 8] = [
+    const ALL: [(Stage, &str); 9] = [
         (Stage::Clocks, "switching clocks"),
         (Stage::UsbStart, "starting USB"),
         (Stage::ImuStart, "setting up the IMU"),
@@ -41,6 +43,7 @@ impl Stage {
         (Stage::Waiting, "waiting for the IMU"),
         (Stage::UsbInterrupt, "in the USB interrupt"),
         (Stage::SamplingInterrupt, "in the sampling interrupt"),
+        (Stage::Partitioning, "making the EEPROM"),
     ];
 }
 
@@ -97,7 +100,7 @@ unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
 pub struct LastLife {
     reset: &'static str,
     hard_fault: bool,
-    stage: Option<&'static str>,
+    stage: Option<(Stage, &'static str)>,
 }
 
 impl LastLife {
@@ -119,15 +122,19 @@ impl LastLife {
         let stage = crumb.and_then(|crumb| {
             let number = crumb & 0xFF;
             Stage::ALL
-                .iter()
+                .into_iter()
                 .find(|(stage, _)| *stage as u32 == number)
-                .map(|(_, name)| *name)
         });
         Some(LastLife {
             reset,
             hard_fault: crumb.is_some_and(|crumb| crumb & HARD_FAULT != 0),
             stage,
         })
+    }
+
+    /// Whether it ended at `stage`.
+    pub fn was_at(&self, stage: Stage) -> bool {
+        self.stage.is_some_and(|(at, _)| at == stage)
     }
 }
 
@@ -143,7 +150,7 @@ impl fmt::Display for LastLife {
             "reset by {} {}while {}",
             self.reset,
             fault,
-            self.stage.unwrap_or("starting up")
+            self.stage.map_or("starting up", |(_, name)| name)
         )
     }
 }

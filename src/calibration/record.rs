@@ -284,8 +284,8 @@ fn values<const N: usize>(body: &[u8], start: usize) -> Result<[f32; N], RecordE
     Ok(values)
 }
 
-/// CRC-32/ISO-HDLC. A bit at a time: it runs once at start.
-fn crc32(bytes: &[u8]) -> u32 {
+/// CRC-32/ISO-HDLC. A bit at a time: it runs at start and when something is kept.
+pub fn crc32(bytes: &[u8]) -> u32 {
     let crc = bytes.iter().fold(u32::MAX, |crc, &byte| {
         (0..8).fold(crc ^ u32::from(byte), |crc, _| {
             crc >> 1 ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 }

@@ -3,6 +3,7 @@
 use crate::cpu::Pace;
 use crate::motion::Motion;
 use crate::mpu9250::Part;
+pub use crate::peripherals::ftfl::Eeprom;
 use crate::witness::Trap;
 
 /// What is on the board, and how strictly it is judged.
@@ -11,6 +12,8 @@ pub struct Setup {
     pub motion: Box<dyn Motion>,
     /// The individual sensor: what it is, and its errors.
     pub part: Part,
+    /// What an earlier board has left in the EEPROM.
+    pub eeprom: Eeprom,
     /// Traps that do not stop the run: the board goes on as silicon would.
     pub allowed: Vec<Trap>,
     /// By which end of the band of cycle counts time passes.
@@ -27,11 +30,18 @@ impl Setup {
         Setup {
             motion,
             part: Part::perfect(),
+            eeprom: Eeprom::default(),
             allowed: Vec::new(),
             pace: Pace::default(),
             skip_polling: true,
             timed_function: String::new(),
         }
+    }
+
+    /// The same board with what an earlier one has left in its EEPROM.
+    pub fn with_eeprom(mut self, eeprom: Eeprom) -> Setup {
+        self.eeprom = eeprom;
+        self
     }
 
     /// The same board, which goes on as silicon would after stepping into one of these traps.

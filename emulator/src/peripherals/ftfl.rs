@@ -3,11 +3,14 @@
 
 mod commands;
 
+mod eeprom;
+
 mod memory;
 
 use crate::time::{NEVER, Ticks};
 use crate::witness::{Trap, Witness};
 use commands::{Effect, Failure};
+pub use eeprom::{Eeprom, EepromError};
 pub use memory::{FLEXNVM_BASE, FLEXRAM_BASE, Memory};
 
 const FSTAT: usize = 0x00;
@@ -47,20 +50,27 @@ pub struct FlashController {
     running: Option<Running>,
     /// Key verification failed: no further attempt before a reset.
     key_refused: bool,
+    /// Writes of EEPROM since power-on: each wears it.
+    pub eeprom_writes: u32,
+    /// A fault: what is begun never ends, until the next reset.
+    pub stuck: bool,
     /// Program flash, FlexNVM and what is written once.
     pub memory: Memory,
 }
 
 impl FlashController {
-    /// The state after a system reset of a chip with these memories.
-    pub fn new(mut memory: Memory) -> FlashController {
+    /// The state after a system reset, at `now`, of a chip with these memories.
+    pub fn new(mut memory: Memory, now: Ticks) -> FlashController {
         let mut registers = [0; 0x18];
-        registers[FSTAT] = CCIF;
-        registers[FCNFG] = if memory.eeprom_size() > 0 {
-            EEERDY
-        } else {
-            RAMRDY
-        };
+        let loading = (memory.eeprom_size() > 0).then(|| Running {
+            until: now + commands::EEPROM_LOADING,
+            effect: Effect::EepromLoaded,
+            hides_flash: false,
+        });
+        if loading.is_none() {
+            registers[FSTAT] = CCIF;
+            registers[FCNFG] = RAMRDY;
+        }
         // Loaded from the flash configuration field during reset.
         let field = |offset: usize| memory.program[0x400 + offset];
         registers[FSEC] = field(0xC);
@@ -75,15 +85,41 @@ impl FlashController {
         memory.reload_flexram();
         FlashController {
             registers,
-            running: None,
+            running: loading,
             key_refused: false,
+            eeprom_writes: 0,
+            stuck: false,
             memory,
         }
     }
 
-    /// A system reset: the memories keep their contents.
-    pub fn reset(&mut self) {
-        *self = FlashController::new(self.memory.clone());
+    /// A system reset: the memories keep their contents, but for an EEPROM write that it interrupts.
+    pub fn reset(&mut self, now: Ticks) {
+        let memory = self.memory.clone().with_eeprom_contents(&self.eeprom());
+        *self = FlashController {
+            eeprom_writes: self.eeprom_writes,
+            stuck: self.stuck,
+            ..FlashController::new(memory, now)
+        };
+    }
+
+    /// What the EEPROM would hold if power failed now.
+    ///
+    /// Of bytes that are being written nothing is guaranteed then; here they become neither what they were nor what
+    /// they should be, so that a program which relies on either is found out.
+    pub fn eeprom(&self) -> Eeprom {
+        let mut contents = self.memory.eeprom().to_vec();
+        if let Some(Running {
+            effect: Effect::EepromWritten(range),
+            ..
+        }) = &self.running
+        {
+            let written = &self.memory.flexram()[range.clone()];
+            for (byte, written) in contents[range.clone()].iter_mut().zip(written) {
+                *byte = interrupted(*byte, *written);
+            }
+        }
+        Eeprom::of(contents)
     }
 
     /// Whether the processor cannot read program flash now, because a command works on it.
@@ -95,23 +131,33 @@ impl FlashController {
 
     /// When the running command ends.
     pub fn next_event(&self) -> Ticks {
-        self.running.as_ref().map_or(NEVER, |running| running.until)
+        match &self.running {
+            Some(running) if !self.stuck => running.until,
+            _ => NEVER,
+        }
     }
 
     /// Ends the running command if its time has come.
     pub fn advance(&mut self, now: Ticks) {
-        let Some(running) = self.running.take_if(|running| running.until <= now) else {
+        let stuck = self.stuck;
+        let ended = |running: &mut Running| running.until <= now && !stuck;
+        let Some(running) = self.running.take_if(ended) else {
             return;
         };
         match running.effect {
             Effect::Nothing => {}
             Effect::Return(bytes) => self.registers[FCCOB + 4..FCCOB + 8].copy_from_slice(&bytes),
             Effect::VerifyFailed => self.registers[FSTAT] |= MGSTAT0,
-            Effect::FlexRam { eeprom } => {
-                self.registers[FCNFG] &= !(RAMRDY | EEERDY);
-                self.registers[FCNFG] |= if eeprom { EEERDY } else { RAMRDY };
+            Effect::FlexRam { eeprom } => self.use_flexram(eeprom),
+            Effect::EepromWritten(range) => {
+                self.memory.keep_eeprom(range);
+                self.use_flexram(true);
             }
-            Effect::EepromWritten => self.registers[FCNFG] |= EEERDY,
+            Effect::EepromLoaded => self.use_flexram(true),
+            Effect::Partitioned(codes) => {
+                self.memory.split(codes);
+                self.use_flexram(self.memory.eeprom_size() > 0);
+            }
             Effect::Unsecured => self.registers[FSEC] = self.registers[FSEC] & !3 | 2,
             Effect::Erased => {
                 self.registers[FSEC] = self.registers[FSEC] & !3 | 2;
@@ -119,6 +165,12 @@ impl FlashController {
             }
         }
         self.registers[FSTAT] |= CCIF;
+    }
+
+    /// FlexRAM is ready, as EEPROM or as RAM.
+    fn use_flexram(&mut self, eeprom: bool) {
+        self.registers[FCNFG] &= !(RAMRDY | EEERDY);
+        self.registers[FCNFG] |= if eeprom { EEERDY } else { RAMRDY };
     }
 
     /// Whether "command complete" asks for its interrupt.
@@ -281,15 +333,21 @@ impl FlashController {
             );
         } else {
             self.memory.write_flexram(address, width, value);
-            self.memory.keep_eeprom();
+            self.eeprom_writes = self.eeprom_writes.saturating_add(1);
             self.registers[FSTAT] &= !CCIF;
             self.registers[FCNFG] &= !EEERDY;
             self.running = Some(Running {
                 until: now + commands::eeprom_write_time(width),
-                effect: Effect::EepromWritten,
+                effect: Effect::EepromWritten(offset..offset + usize::from(width)),
                 hides_flash: false,
             });
         }
         true
     }
+}
+
+/// A byte whose writing was interrupted.
+fn interrupted(old: u8, new: u8) -> u8 {
+    let other = old ^ 0x11;
+    if other == new { old ^ 0x22 } else { other }
 }

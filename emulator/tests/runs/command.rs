@@ -221,3 +221,37 @@ fn options_that_do_not_go_together_are_refused() {
         );
     }
 }
+
+#[test]
+fn the_eeprom_goes_from_one_run_to_the_next_in_a_file() {
+    let path = file("eeprom.bin");
+    let _ = fs::remove_file(&path);
+    let options = ["--seconds", "0.2", "--eeprom", path.to_str().unwrap()];
+    let first = run(&options);
+    assert!(first.status.success(), "{}", said(&first));
+    // The tracker has made it, and kept nothing yet.
+    assert_eq!(fs::read(&path).unwrap(), [0xFF; 2048]);
+    let mut sketch = vec![0xFF; 2048];
+    sketch[..4].copy_from_slice(b"mine");
+    fs::write(&path, &sketch).unwrap();
+    let second = run(&options);
+    assert!(second.status.success(), "{}", said(&second));
+    assert_eq!(fs::read(&path).unwrap(), sketch);
+    // A board in another state is another run.
+    assert_ne!(line(&first, "hash"), line(&second, "hash"));
+    fs::remove_file(&path).unwrap();
+}
+
+#[test]
+fn a_file_that_is_no_eeprom_is_refused() {
+    let path = file("no-eeprom.bin");
+    fs::write(&path, [0; 100]).unwrap();
+    let refused = run(&["--seconds", "0.1", "--eeprom", path.to_str().unwrap()]);
+    assert_eq!(refused.status.code(), Some(1));
+    let said = said(&refused);
+    assert!(
+        said.contains("100 bytes are no EEPROM's contents: it has 2048"),
+        "{said}"
+    );
+    fs::remove_file(&path).unwrap();
+}

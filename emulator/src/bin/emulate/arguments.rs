@@ -39,6 +39,11 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     pub image: Option<PathBuf>,
 
+    /// What is in the EEPROM, as from the run before: read at the start, written at the end; a file that is not there is
+    /// a chip that was never partitioned
+    #[arg(long, value_name = "FILE")]
+    pub eeprom: Option<PathBuf>,
+
     /// Run no faster than real time; also done while something reads the pseudo-terminal
     #[arg(long)]
     pub realtime: bool,

@@ -2,6 +2,8 @@
 
 mod arguments;
 
+mod eeprom;
+
 mod input;
 
 mod port;
@@ -83,6 +85,7 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     // What the user has given is looked at first: no point in building before a wrong file name.
     let motion = choose_motion(arguments)?;
     let (description, ends) = (motion.describe(), motion.duration());
+    let kept = arguments.eeprom.as_deref().map(eeprom::read).transpose()?;
     let path = match &arguments.image {
         Some(path) => path.clone(),
         None => firmware::build(firmware::BuildOptions { quiet: true })?,
@@ -101,6 +104,7 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
     let setup = Setup {
         motion,
         part: arguments.part(),
+        eeprom: kept.unwrap_or_default(),
         allowed: arguments.allowed(),
         pace: if arguments.pessimistic {
             Pace::Greatest
@@ -156,10 +160,12 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
         paced_since: None,
     };
     let mut script = arguments.script();
+    let mut heard = true;
     while limit.is_none_or(|limit| board.now() < limit)
         && (board.stop().is_none() || session.is_debugged())
         && board.in_loader().is_none()
         && !interrupted.load(Ordering::Relaxed)
+        && heard
     {
         let inputs = script.due(board.now());
         session.give(&mut board, inputs)?;
@@ -167,16 +173,19 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
         session.run(&mut board, MILLISECOND.min(left));
         match session.pass_on(&mut board) {
             // Whoever read our output has seen enough.
-            Err(error) if is_broken_pipe(&error) => {
-                board.finish_watching()?;
-                return Ok(None);
-            }
+            Err(error) if is_broken_pipe(&error) => heard = false,
             result => result?,
         }
+    }
+    if let Some(path) = &arguments.eeprom {
+        eeprom::write(path, &board.eeprom())?;
     }
     board
         .finish_watching()
         .map_err(|error| format!("the trace or the VCD file could not be written: {error}"))?;
+    if !heard {
+        return Ok(None);
+    }
     session.report.print(&mut board, arguments.timed());
     session.end(&board, interrupted.load(Ordering::Relaxed))?;
     Ok(board.stop().cloned())

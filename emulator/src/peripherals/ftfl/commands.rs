@@ -3,6 +3,8 @@
 //!
 //! Times are typical ones of the order of the data sheet's flash timing tables; no program may rely on them.
 
+use std::ops::Range;
+
 use super::memory::{FLEXNVM_SIZE, FLEXRAM_SIZE};
 use super::{FCNFG, FDPROT, FPROT, FSEC, FlashController, RAMRDY};
 use crate::cpu::FLASH_SIZE;
@@ -29,7 +31,12 @@ pub(super) enum Effect {
     FlexRam {
         eeprom: bool,
     },
-    EepromWritten,
+    /// These bytes of FlexRAM are in the EEPROM.
+    EepromWritten(Range<usize>),
+    /// What the reset sequence does where there is EEPROM.
+    EepromLoaded,
+    /// FlexNVM is partitioned, by these codes.
+    Partitioned([u8; 2]),
     Unsecured,
     Erased,
 }
@@ -58,6 +65,10 @@ struct Place {
     flexnvm: bool,
     offset: usize,
 }
+
+/// How long the reset sequence takes to gather the EEPROM's records in FlexRAM. Nothing public says; long enough that
+/// a program which does not wait is found out.
+pub(super) const EEPROM_LOADING: Ticks = 5 * MILLISECOND;
 
 /// How long a record of emulated EEPROM takes to write (data sheet, 32 KB EEPROM backup).
 pub(super) fn eeprom_write_time(width: u8) -> Ticks {
@@ -290,7 +301,7 @@ impl FlashController {
     }
 
     /// The section of FCCOB4:5 phrases from `place` on; it must not cross a sector.
-    fn section(&self, place: Place) -> Result<std::ops::Range<usize>, Failure> {
+    fn section(&self, place: Place) -> Result<Range<usize>, Failure> {
         let length = usize::from(u16::from_be_bytes([self.object(4), self.object(5)])) * PHRASE;
         let end = place.offset + length;
         let programs = self.object(0) == 0x0B;
@@ -333,7 +344,7 @@ impl FlashController {
         self.look_at_security(place, range, witness);
     }
 
-    fn erase(&mut self, place: Place, range: std::ops::Range<usize>, witness: &mut Witness) {
+    fn erase(&mut self, place: Place, range: Range<usize>, witness: &mut Witness) {
         if place.flexnvm {
             self.memory.flexnvm[range].fill(0xFF);
         } else {
@@ -343,7 +354,7 @@ impl FlashController {
     }
 
     /// A chip whose security byte is not 0b10 in its lowest bits cannot be opened after the next reset.
-    fn look_at_security(&self, place: Place, range: std::ops::Range<usize>, witness: &mut Witness) {
+    fn look_at_security(&self, place: Place, range: Range<usize>, witness: &mut Witness) {
         let byte = self.memory.program[SECURITY_BYTE];
         if !place.flexnvm && range.contains(&SECURITY_BYTE) && byte & 3 != 2 {
             let what = format!(
@@ -423,15 +434,10 @@ impl FlashController {
                 "the EEPROM data set size does not fit the partition code",
             ));
         }
-        self.memory.partition = partition;
-        self.memory.flexnvm.fill(0xFF);
-        self.memory.reload_flexram();
         self.registers[FCNFG] &= !3;
         Ok(Command {
             takes: 70 * MILLISECOND,
-            effect: Effect::FlexRam {
-                eeprom: with_eeprom,
-            },
+            effect: Effect::Partitioned(partition),
             hides_flash: true,
         })
     }

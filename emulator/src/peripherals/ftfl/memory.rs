@@ -1,5 +1,9 @@
 //! What the flash module remembers without power: program flash, FlexNVM, the write-once field and the partition.
 
+use std::ops::Range;
+
+use super::eeprom::Eeprom;
+
 /// Where FlexNVM used as data flash begins.
 pub const FLEXNVM_BASE: u32 = 0x1000_0000;
 /// Where FlexRAM begins.
@@ -53,9 +57,28 @@ impl Memory {
         }
     }
 
-    /// The EEPROM's contents, as a programmer with a debugger would read them.
-    pub fn eeprom(&self) -> &[u8] {
+    /// The same with this in its EEPROM.
+    pub fn with_eeprom(mut self, eeprom: &Eeprom) -> Memory {
+        self.partition = eeprom.partition();
+        self.with_eeprom_contents(eeprom)
+    }
+
+    /// The same, partitioned as it is, with this in its EEPROM.
+    pub(super) fn with_eeprom_contents(mut self, eeprom: &Eeprom) -> Memory {
+        self.eeprom[..eeprom.bytes().len()].copy_from_slice(eeprom.bytes());
+        self
+    }
+
+    /// The EEPROM's contents.
+    pub(super) fn eeprom(&self) -> &[u8] {
         &self.eeprom[..self.eeprom_size()]
+    }
+
+    /// The partition is written: FlexNVM is erased, and FlexRAM shows an EEPROM that was never written.
+    pub(super) fn split(&mut self, partition: [u8; 2]) {
+        self.partition = partition;
+        self.flexnvm.fill(0xFF);
+        self.reload_flexram();
     }
 
     /// Bytes of FlexNVM left as data flash, from its partition code.
@@ -82,9 +105,9 @@ impl Memory {
         self.flexram[..size].copy_from_slice(&self.eeprom[..size]);
     }
 
-    pub(super) fn keep_eeprom(&mut self) {
-        let size = self.eeprom_size();
-        self.eeprom[..size].copy_from_slice(&self.flexram[..size]);
+    /// These bytes of FlexRAM are in the EEPROM now.
+    pub(super) fn keep_eeprom(&mut self, range: Range<usize>) {
+        self.eeprom[range.clone()].copy_from_slice(&self.flexram[range]);
     }
 
     /// Everything erased, as by Erase All Blocks; what was written once stays.
