@@ -105,6 +105,9 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
         bytes.len(),
         back == record
     )?;
+    if record == Record::default() {
+        return Err("every calibration was refused: there is nothing to keep".into());
+    }
     writeln!(text, "type this to the board to use and keep it:")?;
     for (number, piece) in bytes.chunks(24).enumerate() {
         let digits: String = piece.iter().map(|byte| format!("{byte:02x}")).collect();

@@ -48,7 +48,9 @@ const LONGEST_LINE: u8 = 128;
 const LONGEST_REQUEST: usize = 72;
 /// Calls of [`Parser::idle`] in a row after which a mistyped key is forgotten. An echo never pauses
 /// as long inside a line.
-const SILENCE: u8 = 20;
+const SILENCE: u16 = 20;
+/// The same for a request that nobody ends: ten seconds are enough to type one.
+const LONG_SILENCE: u16 = 10_000;
 
 /// What the bytes belong to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,7 +69,7 @@ enum Place {
 pub struct Parser {
     place: Place,
     request: String<LONGEST_REQUEST>,
-    silence: u8,
+    silence: u16,
 }
 
 impl Parser {
@@ -83,8 +85,14 @@ impl Parser {
     /// Nothing came for a millisecond.
     pub fn idle(&mut self) {
         self.silence = self.silence.saturating_add(1);
-        if self.silence >= SILENCE && matches!(self.place, Place::Foreign(_)) {
+        let patience = match self.place {
+            Place::Outside => return,
+            Place::Foreign(_) => SILENCE,
+            Place::Request => LONG_SILENCE,
+        };
+        if self.silence >= patience {
             self.place = Place::Outside;
+            self.request.clear();
         }
     }
 

@@ -1,5 +1,5 @@
 //! The estimator that is streamed by default: a complementary filter of second order for tilt, the
-//! gyro's bias kept up while it runs, and a heading by compass that never touches the tilt.
+//! gyro's bias kept up while it runs, and a heading by compass that corrects nothing but the heading.
 //!
 //! | file | does |
 //! |---|---|
@@ -16,7 +16,8 @@
 //! time, but only if each has entered with its size. That is the idea of VQF (D. Laidig and
 //! T. Seel, “VQF: Highly accurate IMU orientation estimation with bias estimation and magnetic
 //! disturbance rejection”, Information Fusion 91, 2023) with two numbers of state in the place of a
-//! filter in an inertial frame: no root, no division and no trigonometric function in a sample.
+//! filter in an inertial frame: once it has started, six axes take no root, no division and no
+//! trigonometric function in a sample.
 //!
 //! World: y up, −z to magnetic north once a compass has had its say, −z ahead at the start without.
 //!
@@ -134,22 +135,23 @@ impl<T: RealField + Copy> Fusion<T> {
 
     /// Body to world, led by [`Parameters::lead`]; the identity before the first sample.
     pub fn orientation(&self) -> UnitQuaternion<T> {
-        let q = self.heading.turn() * self.inclination.orientation();
+        let q = self.estimate();
         if self.lead.0.is_zero() {
             return q;
         }
         q * gyro::step(self.rate, self.lead)
     }
 
-    /// The same without a compass: heading from the gyro alone, so that no magnet turns the picture.
-    pub fn orientation_without_compass(&self) -> UnitQuaternion<T> {
-        self.inclination.orientation()
+    /// The same without a lead, as of the last sample.
+    pub fn estimate(&self) -> UnitQuaternion<T> {
+        self.heading.turn() * self.inclination.orientation()
     }
 
-    /// Starts again with heading 0 and the tilt this force (body frame) shows. The bias is kept.
+    /// Takes the tilt this force (body frame) shows, and from now on looks straight ahead with the
+    /// heading it has: heading 0, from which north is counted too. The bias is kept.
     pub fn reset(&mut self, force: SpecificForce<T>) {
-        self.inclination.restart(force);
-        self.heading.restart();
+        self.inclination.level(force);
+        self.heading.look_ahead(&self.inclination.orientation());
         self.started = true;
     }
 
@@ -166,14 +168,16 @@ impl<T: RealField + Copy> Fusion<T> {
         self.rest.restart();
     }
 
-    /// Takes this rate (body frame) for the gyro's bias, as one measured at rest.
-    pub fn set_bias(&mut self, at_rest: AngularRate<T>) {
-        self.bias.set(at_rest);
+    /// Takes this rate (body frame) for the gyro's bias, as one measured at rest. False, and nothing
+    /// changes, if it is not finite or beyond [`Parameters::largest_bias_dps`].
+    pub fn set_bias(&mut self, at_rest: AngularRate<T>) -> bool {
+        self.bias.set(at_rest)
     }
 
     /// Begins with this rate (body frame) as the gyro's bias, without believing that it was measured.
-    pub fn guess_bias(&mut self, rate: AngularRate<T>) {
-        self.bias.guess(rate);
+    /// False as in [`Self::set_bias`].
+    pub fn guess_bias(&mut self, rate: AngularRate<T>) -> bool {
+        self.bias.guess(rate)
     }
 
     /// What the gyro reads when nothing turns, and how that is known.

@@ -19,7 +19,9 @@ fn full() -> Record {
         }),
         accelerometer: Some(Accelerometer {
             bias: SpecificForce::from_m_per_s2(Vector3::new(0.5, -0.25, 0.125)),
-            matrix: Matrix3::new(1.5, 0.25, 0.5, -0.25, 0.75, 0.125, -0.5, 0.0625, 1.25),
+            matrix: Matrix3::new(
+                1.125, 0.0625, 0.03125, -0.0625, 0.875, 0.09375, -0.03125, 0.015_625, 1.25,
+            ),
             residual: 0.004,
             placing: Angle::from_rad(0.015),
             temperature_celsius: 27.0,
@@ -82,7 +84,7 @@ fn the_layout_is_the_documented_one() {
     assert_eq!(LENGTH, 140);
     assert_eq!([4, 8, 12, 16].map(number), [0.01, -0.02, 0.03, 24.5]);
     // Bias, then the matrix's second element of its first row, and the first of its second.
-    assert_eq!([20, 36, 44].map(number), [0.5, 0.25, -0.25]);
+    assert_eq!([20, 36, 44].map(number), [0.5, 0.0625, -0.0625]);
     assert_eq!([68, 72, 76].map(number), [0.004, 0.015, 27.0]);
     assert_eq!([84, 92, 96, 100].map(number), [-84.0, 1.5, 0.25, -0.125]);
     assert_eq!([104, 108, 112].map(number), [0.5, 0.0625, 1.0]);
@@ -174,7 +176,11 @@ fn a_correction_applies_all_three() {
     let reading = correction.correct(sample);
     // Written out by hand: rate − bias, and A (force − bias) with force − bias = (2, 4, 8).
     let rate = Vector3::new(0.99, 2.02, 2.97);
-    let force = Vector3::new(3.0 + 1.0 + 4.0, -0.5 + 3.0 + 1.0, -1.0 + 0.25 + 10.0);
+    let force = Vector3::new(
+        2.25 + 0.25 + 0.25,
+        -0.125 + 3.5 + 0.75,
+        -0.0625 + 0.0625 + 10.0,
+    );
     assert!((reading.rate().rad_per_s() - rate).amax() < 1e-6);
     assert!((reading.force().m_per_s2() - force).amax() < 1e-5);
     // For an estimator that keeps the bias itself, the rate stays.

@@ -219,4 +219,9 @@ fn an_echo_of_the_stream_presses_no_keys_and_a_mistyped_key_is_soon_forgotten() 
         parser.idle();
     }
     assert_eq!(parser.push(b'2'), None);
+    // But not for ever.
+    for _ in 0..10_000 {
+        parser.idle();
+    }
+    assert_eq!(parser.push(b'2'), Some(Command::Mode(Mode::ThreeD)));
 }

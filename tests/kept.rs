@@ -21,7 +21,7 @@ fn record() -> Record {
         }),
         accelerometer: Some(Accelerometer {
             bias: SpecificForce::from_g(Vector3::new(0.1, 0.0, 0.0)),
-            matrix: Matrix3::from_diagonal(&Vector3::new(1.0, 0.5, 1.0)),
+            matrix: Matrix3::from_diagonal(&Vector3::new(1.0, 0.9, 1.0)),
             residual: 0.012,
             placing: Angle::from_degrees(1.0),
             temperature_celsius: 25.0,
@@ -68,15 +68,15 @@ fn a_record_in_pieces_is_used_and_handed_on_once() {
     assert_eq!(hand_over(&mut bench, &record()), ALL);
     assert_eq!(bench.tracker.take_calibration_to_keep(), Some(record()));
     assert_eq!(bench.tracker.take_calibration_to_keep(), None);
-    // The force: (0.1 g, 2 g, 0) is 1 g up.
+    // The force: (0.1 g, 1.111 g, 0) is 1 g up.
     bench.ask(":estimator notes");
     bench.type_in(b"4");
     bench.lines.clear();
     bench.feed(10, |_| RawSample {
-        accel: [205, 4096, 0],
+        accel: [205, 2276, 0],
         ..LEVEL
     });
-    assert_eq!(bench.texts(), ["ACC: 0.001 9.810 0.000\n"]);
+    assert_eq!(bench.texts(), ["ACC: 0.001 9.812 0.000\n"]);
 }
 
 #[test]
@@ -103,7 +103,10 @@ fn what_is_no_record_is_refused_and_nothing_changes() {
             "ERR keep: an offset and bytes, or done, is wanted\n",
         ),
         (":keep x 00", "ERR x: an offset from 0 or done is wanted\n"),
-        (":keep 0", "ERR : 1 to 24 bytes in hexadecimal is wanted\n"),
+        (
+            ":keep 0",
+            "ERR 0: an offset and bytes, or done, is wanted\n",
+        ),
         (
             ":keep 0 0",
             "ERR 0: 1 to 24 bytes in hexadecimal is wanted\n",
@@ -122,6 +125,61 @@ fn what_is_no_record_is_refused_and_nothing_changes() {
         assert_eq!(bench.ask(line), answer, "{line}");
     }
     assert_eq!(LENGTH, 140);
+}
+
+#[test]
+fn a_sound_checksum_over_nonsense_is_refused_too() {
+    let mut bench = Bench::started();
+    let good = record();
+    let accelerometer = good.accelerometer.expect("there");
+    let magnetometer = good.magnetometer.expect("there");
+    for bad in [
+        Record {
+            accelerometer: Some(Accelerometer {
+                matrix: Matrix3::identity() * 1000.0,
+                ..accelerometer
+            }),
+            ..good
+        },
+        Record {
+            gyro: Some(Gyro {
+                bias: AngularRate::from_rad_per_s(Vector3::new(5000.0, 0.0, 0.0)),
+                temperature_celsius: 25.0,
+            }),
+            ..good
+        },
+        Record {
+            magnetometer: Some(Magnetometer {
+                soft_iron: Matrix3::zeros(),
+                ..magnetometer
+            }),
+            ..good
+        },
+        Record {
+            magnetometer: Some(Magnetometer {
+                strength_microtesla: 0.0,
+                ..magnetometer
+            }),
+            ..good
+        },
+    ] {
+        let answer = hand_over(&mut bench, &bad);
+        assert!(answer.contains("cannot be meant"), "{answer}");
+        assert_eq!(bench.ask(":calibration"), "OK calibration: none\n");
+    }
+}
+
+#[test]
+fn a_part_that_is_not_in_a_record_stays_as_it_was() {
+    let mut bench = Bench::started();
+    hand_over(&mut bench, &record());
+    let only_gyro = Record {
+        accelerometer: None,
+        magnetometer: None,
+        ..record()
+    };
+    assert_eq!(hand_over(&mut bench, &only_gyro), ALL);
+    assert_eq!(bench.tracker.take_calibration_to_keep(), Some(record()));
 }
 
 #[test]

@@ -21,10 +21,7 @@ fn every_verb_is_answered() {
         (":estimator", "OK estimator default\n"),
         (":estimator notes", "OK estimator notes\n"),
         (":estimator", "OK estimator notes\n"),
-        (
-            ":compass",
-            "OK compass auto: not used, the field is not calibrated\n",
-        ),
+        (":compass", "OK compass auto: no field\n"),
         (":compass off", "OK compass off\n"),
         (":compass on", "OK compass on: no field\n"),
         (":set tilt-time 2.5", "OK tilt-time 2.5000 s\n"),
@@ -35,10 +32,7 @@ fn every_verb_is_answered() {
         (":get notes-time", "OK notes-time 7.6000 s\n"),
         (":get tilt-time", "OK tilt-time 3.0000 s\n"),
         (":estimator", "OK estimator default\n"),
-        (
-            ":compass",
-            "OK compass auto: not used, the field is not calibrated\n",
-        ),
+        (":compass", "OK compass auto: no field\n"),
         (":decimals", "OK decimals 3\n"),
         (":decimals 6", "OK decimals 6\n"),
         (":decimals 7", "ERR 7: 3 to 6 is wanted\n"),
@@ -119,7 +113,10 @@ fn the_verdict_on_the_bias_says_how_it_is_known() {
     );
     bench.ask(":estimator notes");
     let notes = bench.ask(":bias");
-    assert!(notes.ends_with("deg/s, measured once\n"), "{notes}");
+    assert!(
+        notes.ends_with("deg/s, as it was when it was chosen\n"),
+        "{notes}"
+    );
 }
 
 #[test]

@@ -44,6 +44,15 @@ impl Estimator {
         }
     }
 
+    /// The name without what stands in brackets or behind a comma.
+    pub fn short_name(&self) -> &str {
+        self.name
+            .split([',', '('])
+            .next()
+            .unwrap_or_default()
+            .trim()
+    }
+
     /// Body → world (y up) after each sample.
     pub fn run(&self, trial: &Trial) -> Orientations {
         (self.run)(trial)
@@ -155,8 +164,14 @@ fn widened<T: RealField + Copy>(q: UnitQuaternion<T>) -> UnitQuaternion<f64> {
     ))
 }
 
+/// Without the bias of the first second, in which the firmware measures it too.
 fn readings(trial: &Trial) -> impl Iterator<Item = Reading<f64>> {
-    let bias = GyroBias::zero();
+    let second = ((1.0 / trial.period) as usize).clamp(1, trial.samples.len());
+    let sum: Vector3<f64> = trial.samples[..second]
+        .iter()
+        .map(|axes| axes.sample.rate.rad_per_s())
+        .sum();
+    let bias = GyroBias::new(AngularRate::from_rad_per_s(sum / second as f64));
     trial
         .samples
         .iter()

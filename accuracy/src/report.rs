@@ -15,8 +15,8 @@ use crate::trial::{GROUPS, Trial};
 use crate::variant::Variant;
 use picture::{Line, Picture};
 
-/// Most lines that a picture can tell apart.
-const LINES: usize = 5;
+/// What a picture shows, by how the name begins: more lines hide each other.
+const PICTURED: [&str; 4] = ["course notes", "madgwick", "vqf", "vrduino"];
 /// Points of a line.
 const POINTS: usize = 800;
 
@@ -266,14 +266,21 @@ pub fn pictures(
     create(folder)?;
     for (number, trial) in trials.iter().enumerate() {
         for (axes, word) in [(Axes::Six, "inclination"), (Axes::Nine, "total")] {
-            let mut order: Vec<usize> = (0..estimators.len())
-                .filter(|&index| estimators[index].axes == axes)
+            let pictured = |estimator: &Estimator| {
+                let begins = PICTURED.iter().any(|name| estimator.name.starts_with(name));
+                // Ours once, not led and in double precision.
+                let variant = estimator.name.starts_with("vrduino,");
+                estimator.axes == axes && begins && !variant
+            };
+            // Ours last, so that it lies above the others.
+            let order: Vec<usize> = (0..estimators.len())
+                .rev()
+                .filter(|&index| pictured(&estimators[index]))
                 .collect();
-            order.truncate(LINES);
             let lines: Vec<Line<'_>> = order
                 .iter()
                 .map(|&index| Line {
-                    name: &estimators[index].name,
+                    name: estimators[index].short_name(),
                     points: error_over_time(trial, axes, &outcomes[index][number].orientations),
                 })
                 .collect();

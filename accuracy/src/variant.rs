@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use vrduino::imu::RANGES;
-use vrduino::sensor::{RawSample, Sample};
+use vrduino::sensor::Sample;
 use vrduino::units::{AngularRate, MagneticField, SpecificForce};
 
 use crate::trial::{NineAxes, Trial};
@@ -59,9 +59,7 @@ impl Variant {
         match self {
             Self::AsRecorded => trial.clone(),
             Self::Registers => with_samples(trial, |axes| NineAxes {
-                sample: RANGES.sample(&RawSample {
-                    ..RANGES.counts(&axes.sample)
-                }),
+                sample: RANGES.sample(&RANGES.counts(&axes.sample)),
                 field: MagneticField::from_microtesla(
                     axes.field
                         .microtesla()

@@ -20,6 +20,7 @@ use super::six_positions::Accelerometer;
 use super::{Correction, GyroBias, Rest};
 use crate::units::{Angle, AngularRate, MagneticField, SpecificForce};
 use core::fmt;
+use core::ops::RangeInclusive;
 use nalgebra::{Matrix3, Vector3};
 
 /// Bytes of a record.
@@ -229,6 +230,7 @@ impl Record {
 
 fn gyro(body: &[u8]) -> Result<Gyro, RecordError> {
     let [x, y, z, temperature_celsius] = values(body, 4)?;
+    plausible([x, y, z], -0.35..=0.35, 4)?;
     Ok(Gyro {
         bias: AngularRate::from_rad_per_s(Vector3::new(x, y, z)),
         temperature_celsius,
@@ -239,6 +241,11 @@ fn accelerometer(body: &[u8]) -> Result<Accelerometer<f32>, RecordError> {
     let bias: [f32; 3] = values(body, 20)?;
     let matrix: [f32; 9] = values(body, 32)?;
     let [residual, placing, temperature_celsius] = values(body, 68)?;
+    plausible(bias, -3.0..=3.0, 20)?;
+    let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = matrix;
+    plausible([xx, yy, zz], 0.8..=1.25, 32)?;
+    plausible([xy, xz, yx, yz, zx, zy], -0.1..=0.1, 36)?;
+    plausible([residual], 0.0..=0.2, 68)?;
     Ok(Accelerometer {
         bias: SpecificForce::from_m_per_s2(bias.into()),
         matrix: Matrix3::from_row_slice(&matrix),
@@ -252,6 +259,12 @@ fn magnetometer(body: &[u8]) -> Result<Magnetometer<f32>, RecordError> {
     let hard: [f32; 3] = values(body, 80)?;
     let [xx, xy, xz, yy, yz, zz] = values(body, 92)?;
     let [strength, error, coverage, hole, temperature_celsius] = values(body, 116)?;
+    plausible(hard, -2000.0..=2000.0, 80)?;
+    plausible([xx, yy, zz], 0.3..=3.0, 92)?;
+    plausible([xy, xz, yz], -1.0..=1.0, 96)?;
+    plausible([strength], 20.0..=70.0, 116)?;
+    plausible([error], 0.0..=10.0, 120)?;
+    plausible([coverage], 0.0..=1.0, 124)?;
     Ok(Magnetometer {
         hard_iron: MagneticField::from_microtesla(hard.into()),
         soft_iron: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
@@ -261,6 +274,19 @@ fn magnetometer(body: &[u8]) -> Result<Magnetometer<f32>, RecordError> {
         largest_hole: Angle::from_rad(hole),
         temperature_celsius,
     })
+}
+
+/// Whatever made the record, a sensor that works has nothing beyond these: wider than what the
+/// procedures accept, far narrower than what would stop a picture.
+fn plausible<const N: usize>(
+    values: [f32; N],
+    range: RangeInclusive<f32>,
+    offset: usize,
+) -> Result<(), RecordError> {
+    if values.iter().all(|value| range.contains(value)) {
+        return Ok(());
+    }
+    Err(RecordError::Value { offset })
 }
 
 fn write<'a>(bytes: &mut [u8], values: impl Iterator<Item = &'a f32>) {

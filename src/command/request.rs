@@ -298,7 +298,9 @@ pub fn parse(line: &str) -> Result<Request, Refusal> {
                 let Ok(at) = offset.parse() else {
                     return refuse(offset, Reason::Wanted("an offset from 0 or done"));
                 };
-                let digits = next().unwrap_or_default();
+                let Some(digits) = next() else {
+                    return refuse(offset, Reason::Wanted("an offset and bytes, or done,"));
+                };
                 let Some(piece) = Piece::parse(at, digits) else {
                     return refuse(digits, Reason::Wanted("1 to 24 bytes in hexadecimal"));
                 };

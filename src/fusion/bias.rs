@@ -23,6 +23,8 @@ pub struct Bias<T: RealField> {
     coefficients: Coefficients<T>,
     rad_per_s: Vector3<T>,
     at_rest: Option<Vector3<T>>,
+    /// As it was at the last two marks of a rest: its end is the beginning of a motion.
+    marks: [Vector3<T>; 2],
     source: Source,
 }
 
@@ -32,19 +34,28 @@ struct Coefficients<T> {
     largest: T,
     /// Blocks that a mean at rest goes back at most.
     memory: u32,
+    /// Blocks that a bias known before weighs in it.
+    weight: u32,
+    /// Blocks between two marks.
+    mark: u32,
 }
 
-/// A rest of hours follows the temperature: the mean goes back a minute, s.
-const MEMORY: f64 = 60.0;
+/// A long rest follows the temperature: the mean goes back so far, s.
+const MEMORY: f64 = 5.0;
+/// What was known before a rest counts like so much of it, s.
+const WEIGHT: f64 = 1.0;
+/// A rest ends so long before it is seen to, s: once or twice this is taken back.
+const MARK: f64 = 0.25;
 
 impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {
+        let block = Seconds(rates.sample.0 * scalar(DECIMATION));
+        let blocks = |time: f64| samples(Seconds(convert(time)), block);
         Self {
             largest: size(parameters.largest_bias_dps * convert(RADIANS_PER_DEGREE)),
-            memory: samples(
-                Seconds(convert(MEMORY)),
-                Seconds(rates.sample.0 * scalar(DECIMATION)),
-            ),
+            memory: blocks(MEMORY),
+            weight: blocks(WEIGHT),
+            mark: blocks(MARK),
         }
     }
 }
@@ -55,6 +66,7 @@ impl<T: RealField + Copy> Bias<T> {
             coefficients: Coefficients::new(parameters, rates),
             rad_per_s: Vector3::zeros(),
             at_rest: None,
+            marks: [Vector3::zeros(); 2],
             source: Source::Unmeasured,
         }
     }
@@ -82,24 +94,48 @@ impl<T: RealField + Copy> Bias<T> {
         self.rad_per_s
     }
 
-    pub(super) fn guess(&mut self, rate: AngularRate<T>) {
+    /// False if it is none that can be believed; then nothing changes.
+    pub(super) fn guess(&mut self, rate: AngularRate<T>) -> bool {
         let rate = rate.rad_per_s();
-        if rate.iter().all(|component| component.is_finite()) {
-            self.rad_per_s = self.bounded(rate);
+        let within = rate
+            .iter()
+            .all(|part| part.abs() <= self.coefficients.largest);
+        if within {
+            self.rad_per_s = rate;
         }
+        within
     }
 
-    pub(super) fn set(&mut self, at_rest: AngularRate<T>) {
-        self.guess(at_rest);
-        self.at_rest = Some(self.rad_per_s);
-        self.source = Source::Rest { samples: 0 };
+    /// The same of one measured at rest.
+    pub(super) fn set(&mut self, at_rest: AngularRate<T>) -> bool {
+        let within = self.guess(at_rest);
+        if within {
+            self.at_rest = Some(self.rad_per_s);
+            self.marks = [self.rad_per_s; 2];
+            self.source = Source::Rest { samples: 0 };
+        }
+        within
     }
 
     /// The `number`th block of a rest (from 1): the mean of the low-passed rate.
     pub(super) fn rests(&mut self, mean_rate: Vector3<T>, number: u32) {
-        let number = number.min(self.coefficients.memory);
-        let step = (mean_rate - self.rad_per_s) * share::<T>(number);
+        let Coefficients {
+            memory,
+            weight,
+            mark,
+            ..
+        } = self.coefficients;
+        if number == 1 {
+            // What is known already is a part of the mean, unless it is another bias altogether.
+            self.marks = [self.at_rest.map_or(mean_rate, |_| self.rad_per_s); 2];
+        }
+        let known = if self.at_rest.is_some() { weight } else { 0 };
+        let count = number.saturating_add(known).min(memory);
+        let step = (mean_rate - self.rad_per_s) * share::<T>(count);
         self.rad_per_s = self.bounded(self.rad_per_s + step);
+        if number.is_multiple_of(mark) {
+            self.marks = [self.marks[1], self.rad_per_s];
+        }
         self.at_rest = Some(self.rad_per_s);
         self.source = Source::Rest { samples: 0 };
     }
@@ -107,6 +143,11 @@ impl<T: RealField + Copy> Bias<T> {
     /// A block on the move.
     pub(super) fn moves(&mut self) {
         if let Source::Rest { samples } = &mut self.source {
+            if *samples == 0 && self.at_rest == Some(self.rad_per_s) {
+                // The last blocks of the rest were the first of this motion.
+                self.rad_per_s = self.marks[0];
+                self.at_rest = Some(self.marks[0]);
+            }
             *samples = samples.saturating_add(DECIMATION);
         }
     }

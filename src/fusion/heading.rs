@@ -1,5 +1,5 @@
-//! A turn about the vertical, kept beside the inclination: a compass that is wrong turns the picture,
-//! but never tilts it.
+//! A turn about the vertical, kept beside the inclination: a compass that is wrong turns the picture
+//! and corrects no tilt.
 
 use super::disturbance::{Disturbance, FieldVerdict};
 use super::parameters::{Parameters, low_pass_weight, share};
@@ -13,8 +13,10 @@ pub struct Heading<T: RealField> {
     /// rad/s, squared.
     turning: T,
     disturbance: Disturbance<T>,
-    /// Cosine and sine of half the turn about y.
+    /// Cosine and sine of half the turn about y to north.
     half: [T; 2],
+    /// The same of the turn after it, from north to what is to be straight ahead.
+    ahead: [T; 2],
     /// Fields since the start, or since the reference changed: the first weigh alike.
     age: u32,
     renewed: u32,
@@ -33,6 +35,7 @@ impl<T: RealField + Copy> Heading<T> {
             turning: turning * turning,
             disturbance: Disturbance::new(parameters, period),
             half: [T::one(), T::zero()],
+            ahead: [T::one(), T::zero()],
             age: 0,
             renewed: super::parameters::samples(Seconds(convert(RENEWED)), period),
         }
@@ -93,17 +96,28 @@ impl<T: RealField + Copy> Heading<T> {
 
     /// The turn about y, world of the inclination to world.
     pub fn turn(&self) -> UnitQuaternion<T> {
-        let [c, s] = self.half;
+        let [c, s] = after(self.ahead, self.half);
         UnitQuaternion::new_unchecked(Quaternion::new(c, T::zero(), s, T::zero()))
+    }
+
+    /// From now on this orientation, body to world of the inclination, looks straight ahead: its own
+    /// turn about y is taken back.
+    pub fn look_ahead(&mut self, orientation: &UnitQuaternion<T>) {
+        let twist = after(self.half, [orientation.w, orientation.j]);
+        let length = (twist[0] * twist[0] + twist[1] * twist[1]).sqrt();
+        // Upside down there is no turn about y to speak of.
+        if length > convert(1e-6) {
+            self.ahead = [twist[0] / length, -twist[1] / length];
+        }
     }
 
     pub fn verdict(&self) -> FieldVerdict {
         self.disturbance.verdict()
     }
+}
 
-    /// Heading 0; the reference stays.
-    pub fn restart(&mut self) {
-        self.half = [T::one(), T::zero()];
-        self.age = 0;
-    }
+/// A turn about y after another, as cosine and sine of their halves.
+fn after<T: RealField + Copy>(second: [T; 2], first: [T; 2]) -> [T; 2] {
+    let [[c, s], [d, t]] = [second, first];
+    [c * d - s * t, s * d + c * t]
 }

@@ -126,12 +126,6 @@ impl<T: RealField + Copy> Inclination<T> {
         self.error = [T::zero(); 2];
         self.age = self.coefficients.start;
     }
-
-    /// The same with heading 0.
-    pub fn restart(&mut self, force: SpecificForce<T>) {
-        self.orientation = UnitQuaternion::identity();
-        self.level(force);
-    }
 }
 
 /// exp of a half angle: its series, which at 2000 °/s and 1 kHz is good to 2e-14 in w. Beyond 0.4,

@@ -47,6 +47,8 @@ struct Coefficients<T> {
 const FIELD_START: f64 = 1.0;
 /// An error of tilt beyond this (rad, 3°) is a knock's, not a bias's.
 const LARGEST_ERROR: f64 = 0.05;
+/// The same of the heading (rad, 11°): beyond it the field is wrong.
+const LARGEST_HEADING_ERROR: f64 = 0.2;
 
 impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {
@@ -107,6 +109,8 @@ impl<T: RealField + Copy> Integral<T> {
         });
         let heading = heading_error.and_then(|error| {
             let gain = self.heading_gain(source)?;
+            let largest: T = convert(LARGEST_HEADING_ERROR);
+            let error = error.clamp(-largest, largest);
             Some(inclination.in_body(Vector3::y() * (error * gain)))
         });
         match (tilt, heading) {

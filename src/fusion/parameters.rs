@@ -15,8 +15,10 @@ pub struct Rates<T> {
 
 /// The parameters of [`Fusion`](super::Fusion).
 ///
-/// The defaults hold for every motion alike. They were chosen on the 20 recordings of the BROAD
-/// benchmark taken together, never on a single one; `cargo accuracy` prints what they score.
+/// The defaults hold for every motion alike. Times, dampings and gains were chosen on the 20 recordings
+/// of the BROAD benchmark taken together, never on a single one, and all but one lie on a plateau
+/// (`heading_integral_start` has its best at 0.1: half a degree of a cold start with compass). The
+/// limits on the bias are the sensor's. `cargo accuracy` prints what they score.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T> {
     /// τ: an error of tilt is gone in about this time. 3 s.
@@ -42,6 +44,9 @@ pub struct Parameters<T> {
     /// Largest bias believed, °/s per axis: the data sheet's zero-rate offset is ±5 at 25 °C, plus
     /// its change with temperature. 10.
     pub largest_bias_dps: T,
+    /// Largest rate that a rest may show and still be one, °/s per axis, unless a bias near it was measured
+    /// before. 2, as in VQF: larger ones are measured by the board's one-second window.
+    pub rest_bias_dps: T,
     /// Most a bias once measured at rest is believed to have changed by the next rest, °/s; beyond it
     /// the board is taken to turn slowly. 1.
     pub largest_change_dps: T,
@@ -78,6 +83,7 @@ impl<T: RealField + Copy> Default for Parameters<T> {
             rest_rate_dps: convert(2.0),
             rest_force: convert(0.5),
             largest_bias_dps: convert(10.0),
+            rest_bias_dps: convert(2.0),
             largest_change_dps: convert(1.0),
             heading_time: seconds(15.0),
             heading_integral: convert(0.003),

@@ -31,6 +31,8 @@ pub struct Rest<T: RealField> {
     mean: Option<(Vector3<T>, Vector3<T>)>,
     /// Blocks in a row close to the mean.
     calm: u32,
+    /// The low-passed force when they began, m/s².
+    anchor: Vector3<T>,
     motion: Motion,
 }
 
@@ -43,7 +45,7 @@ struct Coefficients<T> {
     /// Squared, (m/s²)².
     force: T,
     /// rad/s.
-    largest_bias: T,
+    plausible_bias: T,
     /// rad/s.
     largest_change: T,
     /// Blocks.
@@ -52,8 +54,10 @@ struct Coefficients<T> {
     long: u32,
 }
 
-/// A bias that is not the one known is believed after so many times the time of rest.
-const LONG: u32 = 20;
+/// Calm for so many times as long as a rest takes outdoes a bias known before.
+const LONG: u32 = 4;
+/// Most the low-passed force may wander while nothing moves, m/s², squared: a turn of 1°.
+const WANDER: f64 = 0.17 * 0.17;
 
 impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
@@ -65,8 +69,8 @@ impl<T: RealField + Copy> Coefficients<T> {
             low_pass: low_pass_weight(parameters.rest_filter_time, block),
             rate: rate * rate,
             force: size(parameters.rest_force) * size(parameters.rest_force),
-            largest_bias: parameters.largest_bias_dps * radians,
-            largest_change: parameters.largest_change_dps * radians,
+            plausible_bias: size(parameters.rest_bias_dps * radians),
+            largest_change: size(parameters.largest_change_dps * radians),
             calm,
             long: calm.saturating_mul(LONG),
         }
@@ -81,6 +85,7 @@ impl<T: RealField + Copy> Rest<T> {
             samples: 0,
             mean: None,
             calm: 0,
+            anchor: Vector3::zeros(),
             motion: Motion::Moving { samples: 0 },
         }
     }
@@ -125,9 +130,10 @@ impl<T: RealField + Copy> Rest<T> {
         true
     }
 
-    /// A steady slow turn about the vertical looks like a bias to a gyro and an accelerometer. What
-    /// bounds it is how large a bias can be, and, once one was measured at rest (`known`), how far it
-    /// can have drifted; a bias that is farther off must show for half a minute.
+    /// A steady slow turn about the vertical looks like a bias to a gyro and an accelerometer; about
+    /// any other axis the force turns with it. What bounds it is how large a bias usually is, and, once
+    /// one was measured at rest (`known`), how far it can have drifted since. A rate that is plausible
+    /// but far from the known bias must stay for a few seconds.
     fn is_still(
         &mut self,
         rate: Vector3<T>,
@@ -138,7 +144,7 @@ impl<T: RealField + Copy> Rest<T> {
             low_pass,
             rate: rate_limit,
             force: force_limit,
-            largest_bias,
+            plausible_bias,
             largest_change,
             calm,
             long,
@@ -147,17 +153,27 @@ impl<T: RealField + Copy> Rest<T> {
         let mean_rate = mean_rate + (rate - mean_rate) * low_pass;
         let mean_force = mean_force + (force - mean_force) * low_pass;
         self.mean = Some((mean_rate, mean_force));
+        let near = |known: AngularRate<T>| (mean_rate - known.rad_per_s()).amax() <= largest_change;
+        let is_known = known.is_some_and(near);
+        let plausible = mean_rate.amax() <= plausible_bias;
+        if self.calm == 0 {
+            self.anchor = mean_force;
+        }
         let close = (rate - mean_rate).norm_squared() < rate_limit
             && (force - mean_force).norm_squared() < force_limit
-            && mean_rate.amax() <= largest_bias;
+            && (mean_force - self.anchor).norm_squared() < convert(WANDER)
+            && (is_known || plausible);
         self.calm = if close {
             self.calm.saturating_add(1)
         } else {
             0
         };
-        let drifted =
-            known.is_some_and(|known| (mean_rate - known.rad_per_s()).amax() > largest_change);
-        self.calm >= if drifted { long } else { calm }
+        let enough = if known.is_none() || is_known {
+            calm
+        } else {
+            long
+        };
+        self.calm >= enough
     }
 
     /// The low-passed rate, rad/s, body frame; zero before the first sample.

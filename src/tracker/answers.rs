@@ -73,6 +73,7 @@ impl Tracker {
             UseCompass::Off => "off",
         };
         let state = match self.estimators.fusion().field_verdict() {
+            _ if self.compass.per_second() == 0 => "no field",
             _ if !self.follows_compass() => "not used, the field is not calibrated",
             FieldVerdict::Absent => "no field",
             FieldVerdict::Undisturbed => "heading by compass",
@@ -94,7 +95,10 @@ fn value(estimators: &Estimators, setting: Setting) -> Line {
 fn bias(estimators: &Estimators) -> Line {
     let rate = estimators.bias().rate();
     match estimators.choice() {
-        Choice::Notes => wire::bias(rate, format_args!("measured once")),
+        Choice::Notes if estimators.bias_is_measured() => {
+            wire::bias(rate, format_args!("as it was when it was chosen"))
+        }
+        Choice::Notes => wire::bias(rate, format_args!("never still, a guess")),
         Choice::Default => verdict(estimators.fusion(), rate),
     }
 }

@@ -72,13 +72,18 @@ impl Calibration {
         wire::text(format_args!("OK keep {} bytes at {at}", bytes.len()))
     }
 
-    /// All pieces are there: uses them if they are a record.
+    /// All pieces are there: uses them if they are a record. What is not in it stays as it is known.
     ///
     /// # Errors
     ///
     /// A [`RecordError`] says why they are none; what was known stays in use.
     pub fn finish(&mut self) -> Result<Record, RecordError> {
-        let record = Record::from_bytes(&self.incoming)?;
+        let new = Record::from_bytes(&self.incoming)?;
+        let record = Record {
+            gyro: new.gyro.or(self.record.gyro),
+            accelerometer: new.accelerometer.or(self.record.accelerometer),
+            magnetometer: new.magnetometer.or(self.record.magnetometer),
+        };
         self.set(&record);
         self.to_keep = true;
         Ok(record)

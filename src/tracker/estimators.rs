@@ -74,7 +74,7 @@ impl Estimators {
 
     /// Whether it was measured at rest, by whoever is chosen.
     pub fn bias_is_measured(&self) -> bool {
-        self.choice == Choice::Notes || self.fusion.bias().source() != Source::Unmeasured
+        self.fusion.bias().source() != Source::Unmeasured
     }
 
     /// A bias measured at rest is everybody's.
@@ -112,7 +112,10 @@ impl Estimators {
 
     /// Goes on with another, from the orientation of the one before.
     pub fn choose(&mut self, choice: Choice) {
-        let orientation = self.orientation();
+        let orientation = match self.choice {
+            Choice::Default => self.fusion.estimate(),
+            Choice::Notes => self.notes.orientation(),
+        };
         self.choice = choice;
         match choice {
             Choice::Default => self.fusion.set(orientation),
