@@ -138,3 +138,33 @@ fn a_board_that_is_never_still_says_so_every_minute_until_it_rests() {
     assert_eq!(bench.tagged("warning").len(), 0);
     assert!(bench.ask(":bias").contains(" 0.488 0.000 deg/s, still 5"));
 }
+
+#[test]
+fn a_lead_is_not_built_up_by_choosing_again() {
+    let turning = |_| vrduino::sensor::RawSample {
+        gyro: [0, 8 + 983, 0],
+        ..LEVEL
+    };
+    let mut bench = Bench::started();
+    bench.feed(100, turning);
+    let before = bench.tracker.orientation();
+    bench.ask(":set lead 100");
+    for _ in 0..10 {
+        bench.ask(":estimator default");
+        bench.ask(":estimator notes");
+    }
+    bench.ask(":estimator default");
+    bench.ask(":set lead 0");
+    assert!(bench.tracker.orientation().angle_to(&before) < 1e-5);
+}
+
+#[test]
+fn choosing_the_notes_filter_does_not_make_a_guess_a_measurement() {
+    let mut bench = Bench::new();
+    bench.feed(5000, handled);
+    bench.lines.clear();
+    bench.ask(":estimator notes");
+    bench.feed(2000, handled);
+    assert_eq!(bench.tagged("Bias: ").len(), 0);
+    assert!(bench.ask(":bias").ends_with("never still, a guess\n"));
+}
