@@ -108,10 +108,11 @@ impl<T: RealField + Copy> Fusion<T> {
         }
         if self.rest.update(rate, force, self.bias.at_rest()) {
             match self.motion() {
-                Motion::Still { samples } => {
-                    let number = samples / DECIMATION;
-                    self.bias.rests(self.rest.mean_rate(), number);
+                Motion::Still { samples } if samples <= DECIMATION => {
+                    let (rate, blocks) = self.rest.calm_rate();
+                    self.bias.begins_to_rest(rate, blocks);
                 }
+                Motion::Still { .. } => self.bias.rests(self.rest.block_rate()),
                 Motion::Moving { .. } => self.bias.moves(),
             }
         }

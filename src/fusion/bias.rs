@@ -25,6 +25,8 @@ pub struct Bias<T: RealField> {
     at_rest: Option<Vector3<T>>,
     /// As it was at the last two marks of a rest: its end is the beginning of a motion.
     marks: [Vector3<T>; 2],
+    /// Blocks in the mean of this rest.
+    count: u32,
     source: Source,
 }
 
@@ -67,6 +69,7 @@ impl<T: RealField + Copy> Bias<T> {
             rad_per_s: Vector3::zeros(),
             at_rest: None,
             marks: [Vector3::zeros(); 2],
+            count: 0,
             source: Source::Unmeasured,
         }
     }
@@ -117,25 +120,34 @@ impl<T: RealField + Copy> Bias<T> {
         within
     }
 
-    /// The `number`th block of a rest (from 1): the mean of the low-passed rate.
-    pub(super) fn rests(&mut self, mean_rate: Vector3<T>, number: u32) {
-        let Coefficients {
-            memory,
-            weight,
-            mark,
-            ..
-        } = self.coefficients;
-        if number == 1 {
-            // What is known already is a part of the mean, unless it is another bias altogether.
-            self.marks = [self.at_rest.map_or(mean_rate, |_| self.rad_per_s); 2];
-        }
-        let known = if self.at_rest.is_some() { weight } else { 0 };
-        let count = number.saturating_add(known).min(memory);
-        let step = (mean_rate - self.rad_per_s) * share::<T>(count);
-        self.rad_per_s = self.bounded(self.rad_per_s + step);
-        if number.is_multiple_of(mark) {
+    /// A rest begins: the mean rate of the calm that led to it, rad/s, of so many blocks. What is known
+    /// already is a part of the mean.
+    pub(super) fn begins_to_rest(&mut self, rate: Vector3<T>, blocks: u32) {
+        let known = if self.at_rest.is_some() {
+            self.coefficients.weight
+        } else {
+            0
+        };
+        let whole = blocks.saturating_add(known);
+        let part = scalar::<T>(blocks) / scalar(whole);
+        self.count = whole;
+        self.approach(rate, part);
+        self.marks = [self.rad_per_s; 2];
+    }
+
+    /// It goes on: the rate of another block, rad/s.
+    pub(super) fn rests(&mut self, rate: Vector3<T>) {
+        let Coefficients { memory, mark, .. } = self.coefficients;
+        self.count = self.count.saturating_add(1);
+        self.approach(rate, share(self.count.min(memory)));
+        if self.count.is_multiple_of(mark) {
             self.marks = [self.marks[1], self.rad_per_s];
         }
+    }
+
+    fn approach(&mut self, rate: Vector3<T>, part: T) {
+        let step = (rate - self.rad_per_s) * part;
+        self.rad_per_s = self.bounded(self.rad_per_s + step);
         self.at_rest = Some(self.rad_per_s);
         self.source = Source::Rest { samples: 0 };
     }

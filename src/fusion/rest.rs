@@ -33,6 +33,11 @@ pub struct Rest<T: RealField> {
     calm: u32,
     /// The low-passed force when they began, m/s².
     anchor: Vector3<T>,
+    /// Sum of the rates of those blocks, without the first third, and how many: what came before has
+    /// died away by then.
+    settled: (Vector3<T>, u32),
+    /// Rate of the last block, rad/s.
+    rate: Vector3<T>,
     motion: Motion,
 }
 
@@ -86,6 +91,8 @@ impl<T: RealField + Copy> Rest<T> {
             mean: None,
             calm: 0,
             anchor: Vector3::zeros(),
+            settled: (Vector3::zeros(), 0),
+            rate: Vector3::zeros(),
             motion: Motion::Moving { samples: 0 },
         }
     }
@@ -163,11 +170,15 @@ impl<T: RealField + Copy> Rest<T> {
             && (force - mean_force).norm_squared() < force_limit
             && (mean_force - self.anchor).norm_squared() < convert(WANDER)
             && (is_known || plausible);
-        self.calm = if close {
-            self.calm.saturating_add(1)
+        self.rate = rate;
+        if close {
+            self.calm = self.calm.saturating_add(1);
+            if self.calm > calm / 3 {
+                self.settled = (self.settled.0 + rate, self.settled.1.saturating_add(1));
+            }
         } else {
-            0
-        };
+            self.forget();
+        }
         let enough = if known.is_none() || is_known {
             calm
         } else {
@@ -181,6 +192,22 @@ impl<T: RealField + Copy> Rest<T> {
         self.mean.map_or_else(Vector3::zeros, |(rate, _)| rate)
     }
 
+    /// Mean rate of the calm that led to a rest, rad/s, and of how many blocks.
+    pub fn calm_rate(&self) -> (Vector3<T>, u32) {
+        let (sum, count) = self.settled;
+        (sum * share::<T>(count.max(1)), count.max(1))
+    }
+
+    /// Rate of the last block, rad/s.
+    pub fn block_rate(&self) -> Vector3<T> {
+        self.rate
+    }
+
+    fn forget(&mut self) {
+        self.calm = 0;
+        self.settled = (Vector3::zeros(), 0);
+    }
+
     pub fn motion(&self) -> Motion {
         self.motion
     }
@@ -190,6 +217,6 @@ impl<T: RealField + Copy> Rest<T> {
         self.block = (Vector3::zeros(), Vector3::zeros());
         self.samples = 0;
         self.mean = None;
-        self.calm = 0;
+        self.forget();
     }
 }
