@@ -30,7 +30,7 @@ fn record(number: u8) -> Record {
         accelerometer: Some(Accelerometer {
             bias: SpecificForce::from_m_per_s2(three(2.0) / 100.0),
             matrix: Matrix3::identity() * (1.0 + n / 1000.0) + Matrix3::repeat(n / 500.0),
-            residual: 0.25 + n,
+            residual: (n + 1.0) / 100.0,
             placing: Angle::from_rad(4.0 + n),
             temperature_celsius: 21.0 + n,
         }),
@@ -95,8 +95,9 @@ fn found(run: &mut Run) -> Option<u8> {
         let (n, known) = (number, "OK calibration: field");
         answer
             == format!(
-                "{known} 5{n}.0 uT within {}.0 %, force within {n}.250 m/s2",
-                n + 1
+                "{known} 5{n}.0 uT within {}.0 %, force within {:.3} m/s2",
+                n + 1,
+                f64::from(n + 1) / 100.0
             )
     });
     assert!(
