@@ -4,7 +4,7 @@
 //! first; here every step is put the way that costs least.
 
 use super::half_angle::{tangent_excess, tangent_squared};
-use super::inclination::{Share, anywhere, near_level};
+use super::inclination::{HalfAnglePerTangent, Share, anywhere, near_level};
 use super::multiply::{Multiply, Portable};
 use super::number::{Q, Wide};
 use super::quaternion::Quaternion;
@@ -64,6 +64,8 @@ struct Derived<M> {
     /// Half the angle of one sample, in radians per count.
     half_angle_per_count: Q<M, 49>,
     share: Share,
+    /// Of a little share only.
+    half_angle_per_tangent: Option<HalfAnglePerTangent<M>>,
 }
 
 impl<M: Multiply> Derived<M> {
@@ -75,10 +77,16 @@ impl<M: Multiply> Derived<M> {
         } = *parameters;
         let per_nanosecond = half_angle_per_nanosecond(gyro);
         let half_angle = (per_nanosecond * u64::from(nanoseconds) + (1 << 22)) >> 23;
-        let weight = time_constant.accelerometer_weight(Seconds(nanoseconds as f32 * 1e-9));
+        let share = Share::from_accelerometer_weight(
+            time_constant.accelerometer_weight(Seconds(nanoseconds as f32 * 1e-9)),
+        );
         Self {
             half_angle_per_count: Q::from_bits(half_angle.min(i32::MAX as u64) as i32),
-            share: Share::from_accelerometer_weight(weight),
+            share,
+            half_angle_per_tangent: match share {
+                Share::Little(share) => Some(HalfAnglePerTangent::new(share)),
+                Share::Much(_) => None,
+            },
         }
     }
 }
@@ -164,19 +172,40 @@ impl<M: Multiply> Complementary<M> {
     /// A force of zero counts corrects nothing.
     #[inline(always)]
     pub fn update(&mut self, sample: &RawSample) {
-        let h: Vector<M, 32> = self.half_angle(sample.gyro);
+        let h = self.half_angle(sample.gyro);
+        if let Some(orientation) = self.near_level(h, sample.accel) {
+            self.orientation = orientation;
+        } else {
+            self.orientation = self.anywhere(h.x.bits(), h.y.bits(), h.z.bits(), sample);
+        }
+    }
+
+    /// q_ω, and the force as it sees it.
+    #[inline(always)]
+    fn turned(&self, h: Vector<M, 32>, accel: [i16; 3]) -> (Quaternion<M>, Vector<M, 12>) {
         let h_squared = h.norm_squared();
         let excess = tangent_excess(h_squared);
         let q_omega = self.orientation.turned_in_body(h.grown(excess));
-        let force = q_omega.in_world(sample.accel, tangent_squared(h_squared, excess));
-        let q = match (self.derived.share.small(), near_level(force)) {
-            (Some(share), Some(tilt)) => {
-                let (x, z) = tilt.little(share);
-                q_omega.levelled_a_little(x, z)
-            }
-            _ => levelled(q_omega, force, self.derived.share),
-        };
-        self.orientation = q.normalised();
+        let force = q_omega.in_world(accel, tangent_squared(h_squared, excess));
+        (q_omega, force)
+    }
+
+    /// The sample as it nearly always is: a tilt error of at most 45°, α above 7/8, and a turn of a few degrees.
+    #[inline(always)]
+    fn near_level(&self, h: Vector<M, 32>, accel: [i16; 3]) -> Option<Quaternion<M>> {
+        let half_angle_per_tangent = self.derived.half_angle_per_tangent.as_ref()?;
+        let (q_omega, force) = self.turned(h, accel);
+        let (x, z) = near_level(force, half_angle_per_tangent)?;
+        q_omega.levelled_a_little(x, z).normalised_nearby()
+    }
+
+    /// Any sample. From the start again: what the common path has found would cost it the time to put away.
+    #[cold]
+    #[inline(never)]
+    fn anywhere(&self, x: i32, y: i32, z: i32, sample: &RawSample) -> Quaternion<M> {
+        let h = Vector::new(Q::from_bits(x), Q::from_bits(y), Q::from_bits(z));
+        let (q_omega, force) = self.turned(h, sample.accel);
+        levelled(q_omega, force, self.derived.share)
     }
 
     /// n φ/2 of eq. 17, with the bias off. What is rounded off is carried over to the next sample.
@@ -220,22 +249,20 @@ impl<M: Multiply> Complementary<M> {
     /// nothing.
     pub fn level(&mut self, accel: [i16; 3]) {
         let force = self.orientation.in_world(accel, Q::ZERO);
-        self.orientation = levelled(self.orientation, force, Share::WHOLE).normalised();
+        self.orientation = levelled(self.orientation, force, Share::WHOLE);
     }
 }
 
-/// The way of the samples that are not near level, or of a short time constant.
-#[cold]
-#[inline(never)]
+/// By a share of any tilt, and normalised.
+#[inline]
 fn levelled<M: Multiply>(q: Quaternion<M>, force: Vector<M, 12>, share: Share) -> Quaternion<M> {
-    let Some(tilt) = anywhere(force) else {
-        return q;
-    };
-    match share.small() {
-        Some(share) => {
-            let (x, z) = tilt.little(share);
+    let levelled = match (anywhere(force), share) {
+        (None, _) => q,
+        (Some(tilt), Share::Little(share)) => {
+            let (x, z) = tilt.little(Q::from_bits(share));
             q.levelled_a_little(x, z)
         }
-        None => q.levelled(tilt.whole(share)),
-    }
+        (Some(tilt), Share::Much(share)) => q.levelled(tilt.much(share)),
+    };
+    levelled.normalised()
 }

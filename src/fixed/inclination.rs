@@ -3,7 +3,7 @@
 //! The angle φ between the force and the vertical is arctan(√(x² + z²)/y), and the turn is about the
 //! horizontal axis (−z, 0, x): neither depends on how long the force is.
 
-use super::arc::{arc_tangent_per_ratio, cosine, sine_per_angle};
+use super::arc::{ARC_TANGENT_PER_RATIO, cosine, horner, sine_per_angle};
 use super::division::{reciprocal, reciprocal_root};
 use super::half_angle::tangent_excess;
 use super::multiply::Multiply;
@@ -16,36 +16,56 @@ use core::f64::consts::{FRAC_PI_2, PI};
 ///
 /// That many bits, because a long time constant at a high rate leaves few of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Share(i64);
+pub enum Share {
+    /// Below 1/16, for α above 7/8: in 32 bits.
+    Little(i32),
+    /// More.
+    Much(i64),
+}
 
 impl Share {
+    /// As Q35.
+    const HALF: i64 = 1 << 34;
+
     /// All of the tilt.
-    pub const WHOLE: Self = Self(1 << 34);
+    pub const WHOLE: Self = Self::Much(Self::HALF);
 
     /// From 1 − α, the share of the accelerometer in one sample.
     pub fn from_accelerometer_weight(weight: f32) -> Self {
         // A cast saturates, and makes zero of what is not a number.
-        let bits = (weight * Self::WHOLE.0 as f32) as i64;
-        Self(bits.clamp(0, Self::WHOLE.0))
-    }
-
-    /// In 32 bits, for α above 7/8.
-    #[inline(always)]
-    pub fn small<M: Multiply>(self) -> Option<Q<M, 35>> {
-        i32::try_from(self.0).ok().map(Q::from_bits)
+        let bits = ((weight * Self::HALF as f32) as i64).clamp(0, Self::HALF);
+        i32::try_from(bits).map_or(Self::Much(bits), Self::Little)
     }
 }
 
-/// φ (x, z)/√(x² + z²): the tilt, 0 to π, and which way.
+/// A little share times the polynomial of the arc tangent: what a half angle is of the tilt's tangent.
 #[derive(Clone, Copy, Debug)]
-pub struct Tilt<M> {
-    x: Q<M, 29>,
-    z: Q<M, 29>,
+pub struct HalfAnglePerTangent<M>([Q<M, 34>; 8]);
+
+impl<M: Multiply> HalfAnglePerTangent<M> {
+    /// From the share as Q35.
+    pub fn new(share: i32) -> Self {
+        let times_share = |q30: i32| (i64::from(q30) * i64::from(share) + (1 << 30)) >> 31;
+        Self(ARC_TANGENT_PER_RATIO.map(|q30| Q::from_bits(times_share(q30) as i32)))
+    }
 }
 
-/// Up to 45°; none beyond.
+/// A levelling turn by less than 12°: (x, z) tan(φ s)/√(x² + z²).
+pub type Little<M> = (Q<M, 32>, Q<M, 32>);
+
+/// From half angles to their tangents.
 #[inline(always)]
-pub fn near_level<M: Multiply>(force: Vector<M, 12>) -> Option<Tilt<M>> {
+fn tangents<M: Multiply>(h_x: Q<M, 32>, h_z: Q<M, 32>) -> Little<M> {
+    let excess = tangent_excess(Q::product(h_x, h_x).plus(h_z, h_z));
+    (h_x.plus(h_x, excess), h_z.plus(h_z, excess))
+}
+
+/// For tilts up to 45°; none beyond.
+#[inline(always)]
+pub fn near_level<M: Multiply>(
+    force: Vector<M, 12>,
+    half_angle_per_tangent: &HalfAnglePerTangent<M>,
+) -> Option<Little<M>> {
     let Vector { x, y: up, z } = force;
     if up.bits() <= 0 || x.wide(x) + z.wide(z) > up.wide(up) {
         return None;
@@ -57,15 +77,18 @@ pub fn near_level<M: Multiply>(force: Vector<M, 12>) -> Option<Tilt<M>> {
     let x: Q<M, 30> = Q::<M, 28>::product(scaled(x), per_up).finer();
     let z: Q<M, 30> = Q::<M, 28>::product(scaled(z), per_up).finer();
     let tangent_squared: Q<M, 30> = Q::<M, 28>::product(x, x).plus(z, z).finer();
-    let per_tangent = arc_tangent_per_ratio(tangent_squared);
-    let angle = |q: Q<M, 30>| Q::<M, 28>::product(q, per_tangent).finer();
-    Some(Tilt {
-        x: angle(x),
-        z: angle(z),
-    })
+    let gain = horner(tangent_squared, half_angle_per_tangent.0);
+    Some(tangents(Q::product(x, gain), Q::product(z, gain)))
 }
 
-/// The same for any tilt; none if the force is zero, which has no direction. One that points straight down
+/// φ (x, z)/√(x² + z²): the tilt, 0 to π, and which way.
+#[derive(Clone, Copy, Debug)]
+pub struct Tilt<M> {
+    x: Q<M, 29>,
+    z: Q<M, 29>,
+}
+
+/// Any tilt; none if the force is zero, which has no direction. One that points straight down
 /// is turned up about x, as the notes leave open.
 #[inline]
 pub fn anywhere<M: Multiply>(force: Vector<M, 12>) -> Option<Tilt<M>> {
@@ -94,21 +117,18 @@ pub fn anywhere<M: Multiply>(force: Vector<M, 12>) -> Option<Tilt<M>> {
 }
 
 impl<M: Multiply> Tilt<M> {
-    /// A share of less than 1/16, which is (x, z) tan(φ s)/√(x² + z²).
+    /// A share of less than 1/16.
     #[inline(always)]
-    pub fn little(self, share: Q<M, 35>) -> (Q<M, 32>, Q<M, 32>) {
-        let h_x: Q<M, 32> = Q::product(self.x, share);
-        let h_z: Q<M, 32> = Q::product(self.z, share);
-        let excess = tangent_excess(Q::product(h_x, h_x).plus(h_z, h_z));
-        (h_x.plus(h_x, excess), h_z.plus(h_z, excess))
+    pub fn little(self, share: Q<M, 35>) -> Little<M> {
+        tangents(Q::product(self.x, share), Q::product(self.z, share))
     }
 
-    /// Any share.
+    /// Any share, as Q35.
     #[inline]
-    pub fn whole(self, share: Share) -> Levelling<M> {
+    pub fn much(self, share: i64) -> Levelling<M> {
         // Q27 times Q35 is at most π/2 as Q62.
         let half = |angle: Q<M, 29>| {
-            let product = i64::from(angle.bits() >> 2) * share.0;
+            let product = i64::from(angle.bits() >> 2) * share;
             Q::<M, 30>::from_bits(((product + (1 << 31)) >> 32) as i32)
         };
         let (x, z) = (half(self.x), half(self.z));
@@ -163,7 +183,8 @@ fn angle<M: Multiply>(horizontal: Q<M, 30>, up: Q<M, 30>) -> Q<M, 29> {
     let scaled = |q: Q<M, 30>| Q::<M, 30>::from_bits(q.bits() << shift);
     let ratio: Q<M, 30> = Q::<M, 28>::product(scaled(small), reciprocal(scaled(large))).finer();
     let squared: Q<M, 30> = Q::<M, 28>::product(ratio, ratio).finer();
-    let arc: Q<M, 29> = Q::<M, 28>::product(ratio, arc_tangent_per_ratio(squared)).finer();
+    let per_ratio = horner(squared, ARC_TANGENT_PER_RATIO.map(Q::<M, 30>::from_bits));
+    let arc: Q<M, 29> = Q::<M, 28>::product(ratio, per_ratio).finer();
     let right_angle = Q::constant(FRAC_PI_2);
     match (steep, up.bits() >= 0) {
         (false, true) => arc,

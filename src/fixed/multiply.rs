@@ -5,13 +5,19 @@
 /// Rounded to nearest, halves up, as the Cortex-M4 does it (ARMv7-M manual, SMMULR, SMMLAR, SMMLSR).
 /// What does not fit 32 bits wraps: whoever calls keeps the values within their ranges.
 ///
-/// A trait, because a compiler does not find all three instructions by itself, and this library writes
+/// A trait, because a compiler does not always find the instructions by itself, and this library writes
 /// no assembly language. Both forms give the same bits for any input.
 pub trait Multiply: Copy {
     /// round(a b / 2³²).
     #[inline(always)]
     fn high(a: i32, b: i32) -> i32 {
         ((i64::from(a) * i64::from(b) + HALF) >> 32) as i32
+    }
+
+    /// sum + a b, all 64 bits of it (SMLAL).
+    #[inline(always)]
+    fn add_wide(sum: i64, a: i32, b: i32) -> i64 {
+        sum.wrapping_add(i64::from(a) * i64::from(b))
     }
 
     /// round(sum + a b / 2³²).

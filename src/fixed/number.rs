@@ -160,6 +160,6 @@ impl<M: Multiply, const BITS: u32> Wide<M, BITS> {
     #[inline(always)]
     pub fn plus<const A: u32, const B: u32>(self, a: Q<M, A>, b: Q<M, B>) -> Self {
         const { assert!(A + B == BITS, "a whole product has the bits of both") }
-        Self::from_bits(self.bits + a.wide(b))
+        Self::from_bits(M::add_wide(self.bits, a.bits, b.bits))
     }
 }
