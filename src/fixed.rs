@@ -17,14 +17,15 @@
 //!
 //! | quantity | format | range |
 //! |---|---|---|
-//! | orientation | Q30 | ±1 |
+//! | orientation | Q62, its upper half Q30 | ±1 |
 //! | gyro less bias, counts | Q15 | ±1½ · 2¹⁵ |
 //! | half angle of a sample, rad | Q32 | ±0.19 an axis |
 //! | force, counts | Q15, Q12 in the world | ±2¹⁵ an axis |
 //! | (1 − α)/2 | Q35 | 0 to ½; below 2⁻⁴ in 32 bits |
+//! | half angle of levelling per tangent | Q34 | 0 to 2⁻⁴ |
 //!
-//! On the common path, up to 45° of tilt error and α of 7/8 or more, no instruction depends on the
-//! values.
+//! On the common path, up to 45° of tilt error and α above 7/8, no instruction depends on the
+//! values. `vrduino-cost` counts them on the chip.
 
 pub mod multiply;
 

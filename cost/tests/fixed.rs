@@ -14,7 +14,7 @@ use vrduino_emulator::motion::turns::Turns;
 use vrduino_emulator::time::MILLISECOND;
 
 /// Instructions of a whole update, bias and parameters included, near level: always the same number.
-const NEAR_LEVEL: u64 = 257;
+const NEAR_LEVEL: u64 = 245;
 /// Most that any input may cost.
 const WORST: u64 = 1_000;
 

@@ -176,7 +176,7 @@ impl<M: Multiply> Complementary<M> {
         if let Some(orientation) = self.near_level(h, sample.accel) {
             self.orientation = orientation;
         } else {
-            self.orientation = self.anywhere(h.x.bits(), h.y.bits(), h.z.bits(), sample);
+            self.update_anywhere(sample);
         }
     }
 
@@ -199,33 +199,42 @@ impl<M: Multiply> Complementary<M> {
         q_omega.levelled_a_little(x, z).normalised_nearby()
     }
 
-    /// Any sample. From the start again: what the common path has found would cost it the time to put away.
+    /// Any sample, whose remainders are there already. From the start again: to put away what it has found would
+    /// cost the common path its time.
     #[cold]
     #[inline(never)]
-    fn anywhere(&self, x: i32, y: i32, z: i32, sample: &RawSample) -> Quaternion<M> {
-        let h = Vector::new(Q::from_bits(x), Q::from_bits(y), Q::from_bits(z));
+    fn update_anywhere(&mut self, sample: &RawSample) {
+        let rates = self.rates(sample.gyro);
+        for (rest, rate) in self.remainders.iter_mut().zip(rates) {
+            let angle = Wide::<M, 64>::from_bits(0).plus(rate, self.derived.half_angle_per_count);
+            *rest = rest.wrapping_sub(angle.lower());
+        }
+        let h = self.half_angle(sample.gyro);
         let (q_omega, force) = self.turned(h, sample.accel);
-        levelled(q_omega, force, self.derived.share)
+        self.orientation = levelled(q_omega, force, self.derived.share);
+    }
+
+    /// In counts, with the bias off.
+    #[inline(always)]
+    fn rates(&self, gyro: [i16; 3]) -> [Q<M, 15>; 3] {
+        let [x, y, z] = gyro;
+        let Bias([bias_x, bias_y, bias_z]) = self.bias;
+        let rate = |count: i16, bias: i32| Q::from_bits((i32::from(count) << 15) - bias);
+        [rate(x, bias_x), rate(y, bias_y), rate(z, bias_z)]
     }
 
     /// n φ/2 of eq. 17, with the bias off. What is rounded off is carried over to the next sample.
     #[inline(always)]
     fn half_angle(&mut self, gyro: [i16; 3]) -> Vector<M, 32> {
-        let [x, y, z] = gyro;
-        let Bias([bias_x, bias_y, bias_z]) = self.bias;
+        let [x, y, z] = self.rates(gyro);
         let [rest_x, rest_y, rest_z] = &mut self.remainders;
-        let of = |count: i16, bias: i32, rest: &mut u32| {
-            let rate = Q::<M, 15>::from_bits((i32::from(count) << 15) - bias);
+        let of = |rate: Q<M, 15>, rest: &mut u32| {
             let angle = Wide::<M, 64>::from_bits(i64::from(*rest))
                 .plus(rate, self.derived.half_angle_per_count);
             *rest = angle.lower();
             angle.upper()
         };
-        Vector::new(
-            of(x, bias_x, rest_x),
-            of(y, bias_y, rest_y),
-            of(z, bias_z, rest_z),
-        )
+        Vector::new(of(x, rest_x), of(y, rest_y), of(z, rest_z))
     }
 
     /// w, x, y, z of the orientation as of the last sample, body to world.

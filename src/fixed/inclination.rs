@@ -40,7 +40,7 @@ impl Share {
 
 /// A little share times the polynomial of the arc tangent: what a half angle is of the tilt's tangent.
 #[derive(Clone, Copy, Debug)]
-pub struct HalfAnglePerTangent<M>([Q<M, 34>; 8]);
+pub struct HalfAnglePerTangent<M>([Q<M, 34>; 7]);
 
 impl<M: Multiply> HalfAnglePerTangent<M> {
     /// From the share as Q35.

@@ -17,7 +17,7 @@ pub struct Quaternion<M> {
 }
 
 /// A turn about a horizontal axis: (cos, −sin z, 0, sin x) with the horizontal direction (x, z) that it
-/// brings up, as [`super::inclination`] finds it.
+/// brings up.
 #[derive(Clone, Copy, Debug)]
 pub struct Levelling<M> {
     /// cos φ/2.
