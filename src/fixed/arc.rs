@@ -25,16 +25,18 @@ pub const ARC_TANGENT_PER_RATIO: [i32; 7] = {
 pub fn cosine<M: Multiply>(h_squared: Q<M, 29>) -> Q<M, 30> {
     horner(
         h_squared,
-        [
-            Q::constant(-1.0 / 87_178_291_200.0),
-            Q::constant(1.0 / 479_001_600.0),
-            Q::constant(-1.0 / 3_628_800.0),
-            Q::constant(1.0 / 40_320.0),
-            Q::constant(-1.0 / 720.0),
-            Q::constant(1.0 / 24.0),
-            Q::constant(-0.5),
-            Q::constant(1.0),
-        ],
+        const {
+            [
+                Q::constant(-1.0 / 87_178_291_200.0),
+                Q::constant(1.0 / 479_001_600.0),
+                Q::constant(-1.0 / 3_628_800.0),
+                Q::constant(1.0 / 40_320.0),
+                Q::constant(-1.0 / 720.0),
+                Q::constant(1.0 / 24.0),
+                Q::constant(-0.5),
+                Q::constant(1.0),
+            ]
+        },
     )
 }
 
@@ -43,16 +45,18 @@ pub fn cosine<M: Multiply>(h_squared: Q<M, 29>) -> Q<M, 30> {
 pub fn sine_per_angle<M: Multiply>(h_squared: Q<M, 29>) -> Q<M, 30> {
     horner(
         h_squared,
-        [
-            Q::constant(-1.0 / 1_307_674_368_000.0),
-            Q::constant(1.0 / 6_227_020_800.0),
-            Q::constant(-1.0 / 39_916_800.0),
-            Q::constant(1.0 / 362_880.0),
-            Q::constant(-1.0 / 5_040.0),
-            Q::constant(1.0 / 120.0),
-            Q::constant(-1.0 / 6.0),
-            Q::constant(1.0),
-        ],
+        const {
+            [
+                Q::constant(-1.0 / 1_307_674_368_000.0),
+                Q::constant(1.0 / 6_227_020_800.0),
+                Q::constant(-1.0 / 39_916_800.0),
+                Q::constant(1.0 / 362_880.0),
+                Q::constant(-1.0 / 5_040.0),
+                Q::constant(1.0 / 120.0),
+                Q::constant(-1.0 / 6.0),
+                Q::constant(1.0),
+            ]
+        },
     )
 }
 

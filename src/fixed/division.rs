@@ -12,7 +12,7 @@ pub fn reciprocal<M: Multiply>(y: Q<M, 30>) -> Q<M, 30> {
     let upper = NonZeroU32::new(y.bits() as u32 >> 15 | 1 << 15).unwrap_or(NonZeroU32::MAX);
     let guess = Q::<M, 30>::from_bits((((1 << 31) / upper) << 14) as i32);
     // At most 2⁻¹³ is missing, and the step leaves its square.
-    let missing: Q<M, 32> = Q::<M, 28>::constant(1.0).minus(y, guess).finer();
+    let missing: Q<M, 32> = const { Q::<M, 28>::constant(1.0) }.minus(y, guess).finer();
     guess.plus(guess, missing)
 }
 
@@ -21,11 +21,11 @@ pub fn reciprocal<M: Multiply>(y: Q<M, 30>) -> Q<M, 30> {
 pub fn reciprocal_root<M: Multiply>(y: Q<M, 31>) -> Q<M, 29> {
     // The chord's error is below 0.14 of it; every step leaves one and a half times its square.
     let y30 = Q::<M, 30>::from_bits(y.bits() >> 1);
-    let slope: Q<M, 27> = Q::product(y30, Q::<M, 29>::constant(-4.0 / 3.0));
-    let mut root = Q::<M, 29>::constant(2.2) + slope.finer();
+    let slope: Q<M, 27> = Q::product(y30, const { Q::<M, 29>::constant(-4.0 / 3.0) });
+    let mut root = const { Q::<M, 29>::constant(2.2) } + slope.finer();
     for _ in 0..4 {
         let square: Q<M, 28> = Q::<M, 26>::product(root, root).finer();
-        let missing = Q::<M, 27>::constant(1.0).minus(square, y);
+        let missing = const { Q::<M, 27>::constant(1.0) }.minus(square, y);
         // Half of it: read with one more fraction bit.
         let half: Q<M, 32> = Q::<M, 28>::from_bits(missing.bits()).finer();
         root = root.plus(root, half);

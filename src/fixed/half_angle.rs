@@ -9,8 +9,8 @@ use super::number::Q;
 /// What is left out is 17h⁷/315: of h = 0.03, 2000 °/s about all three axes for a millisecond, 1e-12.
 #[inline(always)]
 pub fn tangent_excess<M: Multiply>(h_squared: Q<M, 32>) -> Q<M, 32> {
-    let third = Q::<M, 32>::constant(1.0 / 3.0);
-    let next = Q::<M, 32>::constant(2.0 / 15.0);
+    let third = const { Q::<M, 32>::constant(1.0 / 3.0) };
+    let next = const { Q::<M, 32>::constant(2.0 / 15.0) };
     Q::product(h_squared, third.plus(h_squared, next))
 }
 

@@ -104,7 +104,7 @@ pub fn anywhere<M: Multiply>(force: Vector<M, 12>) -> Option<Tilt<M>> {
     let Some((x, z, horizontal)) = horizontal(x, z) else {
         let straight_down = Tilt {
             x: Q::ZERO,
-            z: Q::constant(-PI),
+            z: const { Q::constant(-PI) },
         };
         return (up.bits() < 0).then_some(straight_down);
     };
@@ -185,11 +185,11 @@ fn angle<M: Multiply>(horizontal: Q<M, 30>, up: Q<M, 30>) -> Q<M, 29> {
     let squared: Q<M, 30> = Q::<M, 28>::product(ratio, ratio).finer();
     let per_ratio = horner(squared, ARC_TANGENT_PER_RATIO.map(Q::<M, 30>::from_bits));
     let arc: Q<M, 29> = Q::<M, 28>::product(ratio, per_ratio).finer();
-    let right_angle = Q::constant(FRAC_PI_2);
+    let (half_turn, right_angle) = const { (Q::constant(PI), Q::constant(FRAC_PI_2)) };
     match (steep, up.bits() >= 0) {
         (false, true) => arc,
         (true, true) => right_angle - arc,
         (true, false) => right_angle + arc,
-        (false, false) => Q::constant(PI) - arc,
+        (false, false) => half_turn - arc,
     }
 }

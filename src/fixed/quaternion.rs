@@ -77,7 +77,7 @@ impl<M: Multiply> Quaternion<M> {
             z: s_z,
         } = turn;
         // What is added, as Q60: a factor of one would be for the whole, not for its upper half.
-        let c = cos - Q::constant(1.0);
+        let c = cos - const { Q::constant(1.0) };
         let and = |whole: Wide<M, 62>, q60: i64| Wide::from_bits(whole.bits() + (q60 << 2));
         Self {
             w: and(self.w, c.wide(w) + s_z.wide(x) - s_x.wide(z)),
@@ -125,7 +125,7 @@ impl<M: Multiply> Quaternion<M> {
     #[inline(always)]
     pub fn normalised_nearby(self) -> Option<Self> {
         let excess = self.excess();
-        let small = Q::<M, 28>::constant(1.0 / 128.0).bits();
+        let small = const { Q::<M, 28>::constant(1.0 / 128.0).bits() };
         (-small..small)
             .contains(&excess.bits())
             .then(|| self.shortened(excess.finer()))
@@ -141,8 +141,9 @@ impl<M: Multiply> Quaternion<M> {
     /// q (1 + e)^−½ = q (1 − e/2 + 3e²/8 − 5e³/16 + …); leaves 35e⁴/128, 1e-9 for e = 1/128.
     #[inline(always)]
     fn shortened(self, e: Q<M, 33>) -> Self {
-        let inner = Q::<M, 30>::constant(3.0 / 8.0).minus(e, Q::<M, 29>::constant(5.0 / 16.0));
-        let series = Q::<M, 31>::constant(-0.5).plus(e, inner);
+        let inner = const { Q::<M, 30>::constant(3.0 / 8.0) }
+            .minus(e, const { Q::<M, 29>::constant(5.0 / 16.0) });
+        let series = const { Q::<M, 31>::constant(-0.5) }.plus(e, inner);
         let share: Q<M, 32> = Q::product(e, series);
         let [w, x, y, z] = self.upper();
         Self {
