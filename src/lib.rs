@@ -78,6 +78,9 @@ pub mod calibration;
 /// The estimators of the course notes, one per file.
 pub mod orientation;
 
+/// The notes' filter in integers, for a core without a floating-point unit.
+pub mod fixed;
+
 /// The default estimator: tilt, bias and heading, level with the best published filter.
 pub mod fusion;
 

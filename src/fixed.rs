@@ -1,0 +1,46 @@
+//! Estimators in integers, for a core without a floating-point unit: the same filters as in
+//! [`orientation`](crate::orientation), which define what is right, at a hundredth of the cost.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | `multiply` | the one operation all is made of, which a board can do its own way |
+//! | `number` | numbers whose fraction bits are in their type |
+//! | `vector`, `quaternion` | three and four of them |
+//! | `half_angle`, `arc`, `division` | small rotations, arcs and quotients without a library |
+//! | `inclination` | how far from level, eq. 20–23 |
+//! | `complementary` | the filter of eq. 24 |
+//!
+//! # Formats
+//!
+//! A product keeps the upper 32 of its 64 bits: Qa times Qb is Q(a + b − 32). So whatever is small and multiplies a
+//! quaternion is Q32, and the quaternion stays Q30 without a shift.
+//!
+//! | quantity | format | range |
+//! |---|---|---|
+//! | orientation | Q62, its upper half Q30 | ±1 |
+//! | gyro less bias, counts | Q15 | ±1½ · 2¹⁵ |
+//! | half angle of a sample, rad | Q32 | ±0.19 an axis |
+//! | force, counts | Q15, Q12 in the world | ±2¹⁵ an axis |
+//! | (1 − α)/2 | Q35 | 0 to ½; below 2⁻⁴ in 32 bits |
+//! | half angle of levelling per tangent | Q34 | 0 to 2⁻⁴ |
+//!
+//! On the common path, up to 45° of tilt error and α above 7/8, no instruction depends on the
+//! values. `vrduino-cost` counts them on the chip.
+
+pub mod multiply;
+
+pub mod number;
+
+pub mod vector;
+
+pub mod quaternion;
+
+mod half_angle;
+
+mod arc;
+
+mod division;
+
+mod inclination;
+
+pub mod complementary;

@@ -1,0 +1,195 @@
+//! Towards level by a share of the tilt (course notes, section 5.2 and eq. 24): what the force in the world says.
+//!
+//! The angle φ between the force and the vertical is arctan(√(x² + z²)/y), and the turn is about the
+//! horizontal axis (−z, 0, x): neither depends on how long the force is.
+
+use super::arc::{ARC_TANGENT_PER_RATIO, cosine, horner, sine_per_angle};
+use super::division::{reciprocal, reciprocal_root};
+use super::half_angle::tangent_excess;
+use super::multiply::Multiply;
+use super::number::Q;
+use super::quaternion::Levelling;
+use super::vector::Vector;
+use core::f64::consts::{FRAC_PI_2, PI};
+
+/// (1 − α)/2, what a half angle is of the tilt: from 0 to ½, as Q35.
+///
+/// That many bits, because a long time constant at a high rate leaves few of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Share {
+    /// Below 1/16, for α above 7/8: in 32 bits.
+    Little(i32),
+    /// More.
+    Much(i64),
+}
+
+impl Share {
+    /// As Q35.
+    const HALF: i64 = 1 << 34;
+
+    /// All of the tilt.
+    pub const WHOLE: Self = Self::Much(Self::HALF);
+
+    /// From 1 − α, the share of the accelerometer in one sample.
+    pub fn from_accelerometer_weight(weight: f32) -> Self {
+        // A cast saturates, and makes zero of what is not a number.
+        let bits = ((weight * Self::HALF as f32) as i64).clamp(0, Self::HALF);
+        i32::try_from(bits).map_or(Self::Much(bits), Self::Little)
+    }
+}
+
+/// A little share times the polynomial of the arc tangent: what a half angle is of the tilt's tangent.
+#[derive(Clone, Copy, Debug)]
+pub struct HalfAnglePerTangent<M>([Q<M, 34>; 7]);
+
+impl<M: Multiply> HalfAnglePerTangent<M> {
+    /// From the share as Q35.
+    pub fn new(share: i32) -> Self {
+        let times_share = |q30: i32| (i64::from(q30) * i64::from(share) + (1 << 30)) >> 31;
+        Self(ARC_TANGENT_PER_RATIO.map(|q30| Q::from_bits(times_share(q30) as i32)))
+    }
+}
+
+/// A levelling turn by less than 12°: (x, z) tan(φ s)/√(x² + z²).
+pub type Little<M> = (Q<M, 32>, Q<M, 32>);
+
+/// From half angles to their tangents.
+#[inline(always)]
+fn tangents<M: Multiply>(h_x: Q<M, 32>, h_z: Q<M, 32>) -> Little<M> {
+    let excess = tangent_excess(Q::product(h_x, h_x).plus(h_z, h_z));
+    (h_x.plus(h_x, excess), h_z.plus(h_z, excess))
+}
+
+/// For tilts up to 45°; none beyond.
+#[inline(always)]
+pub fn near_level<M: Multiply>(
+    force: Vector<M, 12>,
+    half_angle_per_tangent: &HalfAnglePerTangent<M>,
+) -> Option<Little<M>> {
+    let Vector { x, y: up, z } = force;
+    if up.bits() <= 0 || x.wide(x) + z.wide(z) > up.wide(up) {
+        return None;
+    }
+    // Up becomes 1 to 2, and the others are no longer.
+    let shift = up.bits().leading_zeros() - 1;
+    let scaled = |q: Q<M, 12>| Q::<M, 30>::from_bits(q.bits() << shift);
+    let per_up = reciprocal(scaled(up));
+    let x: Q<M, 30> = Q::<M, 28>::product(scaled(x), per_up).finer();
+    let z: Q<M, 30> = Q::<M, 28>::product(scaled(z), per_up).finer();
+    let tangent_squared: Q<M, 30> = Q::<M, 28>::product(x, x).plus(z, z).finer();
+    let gain = horner(tangent_squared, half_angle_per_tangent.0);
+    Some(tangents(Q::product(x, gain), Q::product(z, gain)))
+}
+
+/// φ (x, z)/√(x² + z²): the tilt, 0 to π, and which way.
+#[derive(Clone, Copy, Debug)]
+pub struct Tilt<M> {
+    x: Q<M, 29>,
+    z: Q<M, 29>,
+}
+
+/// Any tilt; none if the force is zero, which has no direction. One that points straight down
+/// is turned up about x, as the notes leave open.
+#[inline]
+pub fn anywhere<M: Multiply>(force: Vector<M, 12>) -> Option<Tilt<M>> {
+    let Vector { x, y: up, z } = force;
+    let largest = x.bits().unsigned_abs() | up.bits().unsigned_abs() | z.bits().unsigned_abs();
+    if largest == 0 {
+        return None;
+    }
+    // The largest becomes ½ to 1.
+    let shift = largest.leading_zeros().saturating_sub(2);
+    let scaled = |q: Q<M, 12>| Q::<M, 30>::from_bits(q.bits() << shift);
+    let (x, up, z) = (scaled(x), scaled(up), scaled(z));
+    let Some((x, z, horizontal)) = horizontal(x, z) else {
+        let straight_down = Tilt {
+            x: Q::ZERO,
+            z: const { Q::constant(-PI) },
+        };
+        return (up.bits() < 0).then_some(straight_down);
+    };
+    let phi = angle(horizontal, up);
+    let along = |q: Q<M, 30>| Q::<M, 27>::product(phi, q).finer();
+    Some(Tilt {
+        x: along(x),
+        z: along(z),
+    })
+}
+
+impl<M: Multiply> Tilt<M> {
+    /// A share of less than 1/16.
+    #[inline(always)]
+    pub fn little(self, share: Q<M, 35>) -> Little<M> {
+        tangents(Q::product(self.x, share), Q::product(self.z, share))
+    }
+
+    /// Any share, as Q35.
+    #[inline]
+    pub fn much(self, share: i64) -> Levelling<M> {
+        // Q27 times Q35 is at most π/2 as Q62.
+        let half = |angle: Q<M, 29>| {
+            let product = i64::from(angle.bits() >> 2) * share;
+            Q::<M, 30>::from_bits(((product + (1 << 31)) >> 32) as i32)
+        };
+        let (x, z) = (half(self.x), half(self.z));
+        let squared: Q<M, 29> = Q::<M, 28>::product(x, x).plus(z, z).finer();
+        let sine = sine_per_angle(squared);
+        Levelling {
+            cos: cosine(squared),
+            x: Q::<M, 28>::product(x, sine).finer(),
+            z: Q::<M, 28>::product(z, sine).finer(),
+        }
+    }
+}
+
+/// (x, z) / √(x² + z²), and the root; none if both are zero.
+#[inline]
+fn horizontal<M: Multiply>(x: Q<M, 30>, z: Q<M, 30>) -> Option<(Q<M, 30>, Q<M, 30>, Q<M, 30>)> {
+    let largest = x.bits().unsigned_abs() | z.bits().unsigned_abs();
+    if largest == 0 {
+        return None;
+    }
+    // The larger becomes ½ to 1 of its own: beside a large vertical part both may be small.
+    let shift = largest.leading_zeros().saturating_sub(2);
+    let (x, z) = (x.bits() << shift, z.bits() << shift);
+    let square = i64::from(x) * i64::from(x) + i64::from(z) * i64::from(z);
+    // From ¼ to below 1, by halving both if need be.
+    let halved = u32::from(square >= 1 << 60);
+    let (x, z) = (
+        Q::<M, 30>::from_bits(x >> halved),
+        Q::<M, 30>::from_bits(z >> halved),
+    );
+    let square = Q::<M, 31>::from_bits((square >> (29 + 2 * halved)) as i32);
+    let per_root = reciprocal_root(square);
+    let root: Q<M, 30> = Q::<M, 28>::product(square, per_root).finer();
+    Some((
+        Q::<M, 27>::product(x, per_root).finer(),
+        Q::<M, 27>::product(z, per_root).finer(),
+        Q::from_bits(((i64::from(root.bits()) << halved) >> shift) as i32),
+    ))
+}
+
+/// From the vertical: 0 to π. The larger of the two is at least ½.
+#[inline]
+fn angle<M: Multiply>(horizontal: Q<M, 30>, up: Q<M, 30>) -> Q<M, 29> {
+    let vertical = Q::<M, 30>::from_bits(up.bits().abs());
+    let steep = horizontal.bits() > vertical.bits();
+    let (small, large) = if steep {
+        (vertical, horizontal)
+    } else {
+        (horizontal, vertical)
+    };
+    let shift = large.bits().leading_zeros() - 1;
+    let scaled = |q: Q<M, 30>| Q::<M, 30>::from_bits(q.bits() << shift);
+    let ratio: Q<M, 30> = Q::<M, 28>::product(scaled(small), reciprocal(scaled(large))).finer();
+    let squared: Q<M, 30> = Q::<M, 28>::product(ratio, ratio).finer();
+    let per_ratio = horner(squared, ARC_TANGENT_PER_RATIO.map(Q::<M, 30>::from_bits));
+    let arc: Q<M, 29> = Q::<M, 28>::product(ratio, per_ratio).finer();
+    let (half_turn, right_angle) = const { (Q::constant(PI), Q::constant(FRAC_PI_2)) };
+    match (steep, up.bits() >= 0) {
+        (false, true) => arc,
+        (true, true) => right_angle - arc,
+        (true, false) => right_angle + arc,
+        (false, false) => half_turn - arc,
+    }
+}

@@ -1,0 +1,165 @@
+//! Numbers with a fixed number of fraction bits, which are in their type.
+
+use super::multiply::Multiply;
+use core::marker::PhantomData;
+use core::ops::{Add, Neg, Sub};
+
+/// `bits` · 2^−`BITS`, from −2^(31−`BITS`) to just below 2^(31−`BITS`); its products are taken by `M`.
+///
+/// Sums are exact as long as they stay in range, which is the caller's affair. A product is rounded to the
+/// nearest bit once, and the format of the result follows from those of the factors: the compiler
+/// refuses any other.
+///
+/// ```
+/// use vrduino::fixed::{multiply::Portable, number::Q};
+///
+/// let half = Q::<Portable, 32>::constant(0.25);
+/// let three = Q::<Portable, 28>::constant(3.0);
+/// // 32 + 28 − 32 fraction bits.
+/// let product: Q<Portable, 28> = Q::product(half, three);
+/// assert_eq!(product, Q::constant(0.75));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Q<M, const BITS: u32> {
+    bits: i32,
+    multiply: PhantomData<M>,
+}
+
+impl<M: Multiply, const BITS: u32> Q<M, BITS> {
+    /// Nothing.
+    pub const ZERO: Self = Self::from_bits(0);
+
+    /// From the integer that stands for it.
+    #[inline(always)]
+    pub const fn from_bits(bits: i32) -> Self {
+        Self {
+            bits,
+            multiply: PhantomData,
+        }
+    }
+
+    /// The integer that stands for it.
+    #[inline(always)]
+    pub const fn bits(self) -> i32 {
+        self.bits
+    }
+
+    /// The nearest to `value`; the end of the range for what is outside. For constants: it computes in
+    /// floating point.
+    pub const fn constant(value: f64) -> Self {
+        let mut scaled = value;
+        let mut bit = 0;
+        while bit < BITS {
+            scaled *= 2.0;
+            bit += 1;
+        }
+        // A cast cuts off towards zero, and saturates.
+        let away = if scaled < 0.0 { -0.5 } else { 0.5 };
+        Self::from_bits((scaled + away) as i32)
+    }
+
+    /// a b.
+    #[inline(always)]
+    pub fn product<const A: u32, const B: u32>(a: Q<M, A>, b: Q<M, B>) -> Self {
+        const { assert!(A + B == BITS + 32, "a product has the bits of both less 32") }
+        Self::from_bits(M::high(a.bits, b.bits))
+    }
+
+    /// This and a b.
+    #[inline(always)]
+    pub fn plus<const A: u32, const B: u32>(self, a: Q<M, A>, b: Q<M, B>) -> Self {
+        const { assert!(A + B == BITS + 32, "a product has the bits of both less 32") }
+        Self::from_bits(M::add_high(self.bits, a.bits, b.bits))
+    }
+
+    /// This less a b.
+    #[inline(always)]
+    pub fn minus<const A: u32, const B: u32>(self, a: Q<M, A>, b: Q<M, B>) -> Self {
+        const { assert!(A + B == BITS + 32, "a product has the bits of both less 32") }
+        Self::from_bits(M::subtract_high(self.bits, a.bits, b.bits))
+    }
+
+    /// The same value in a finer format, in which it has to fit.
+    #[inline(always)]
+    pub fn finer<const FINER: u32>(self) -> Q<M, FINER> {
+        const { assert!(FINER >= BITS, "a finer format has more bits") }
+        Q::from_bits(self.bits << (FINER - BITS))
+    }
+
+    /// The exact product, with the fraction bits of both.
+    #[inline(always)]
+    pub fn wide<const B: u32>(self, other: Q<M, B>) -> i64 {
+        i64::from(self.bits) * i64::from(other.bits)
+    }
+}
+
+impl<M: Multiply, const BITS: u32> Add for Q<M, BITS> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::from_bits(self.bits + other.bits)
+    }
+}
+
+impl<M: Multiply, const BITS: u32> Sub for Q<M, BITS> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::from_bits(self.bits - other.bits)
+    }
+}
+
+impl<M: Multiply, const BITS: u32> Neg for Q<M, BITS> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::from_bits(-self.bits)
+    }
+}
+
+/// The same with 64 bits: a sum of products that nothing is rounded off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wide<M, const BITS: u32> {
+    bits: i64,
+    multiply: PhantomData<M>,
+}
+
+impl<M: Multiply, const BITS: u32> Wide<M, BITS> {
+    /// From the integer that stands for it.
+    #[inline(always)]
+    pub const fn from_bits(bits: i64) -> Self {
+        Self {
+            bits,
+            multiply: PhantomData,
+        }
+    }
+
+    /// The integer that stands for it.
+    #[inline(always)]
+    pub const fn bits(self) -> i64 {
+        self.bits
+    }
+
+    /// The upper half, rounded down.
+    #[inline(always)]
+    pub fn upper<const UPPER: u32>(self) -> Q<M, UPPER> {
+        const { assert!(UPPER + 32 == BITS, "the upper half has 32 bits less") }
+        Q::from_bits((self.bits >> 32) as i32)
+    }
+
+    /// What [`upper`](Self::upper) leaves.
+    #[inline(always)]
+    pub fn lower(self) -> u32 {
+        self.bits as u32
+    }
+
+    /// This and a b.
+    #[inline(always)]
+    pub fn plus<const A: u32, const B: u32>(self, a: Q<M, A>, b: Q<M, B>) -> Self {
+        const { assert!(A + B == BITS, "a whole product has the bits of both") }
+        Self::from_bits(M::add_wide(self.bits, a.bits, b.bits))
+    }
+}

@@ -1,0 +1,156 @@
+//! Orientations: unit quaternions of 62 fraction bits, the upper 30 of which are reckoned with.
+//!
+//! The lower half is what a sample adds beyond them. Rounding it off would be off by as much again and again
+//! wherever the same few counts come again and again: a sensor at rest.
+
+use super::multiply::Multiply;
+use super::number::{Q, Wide};
+use super::vector::Vector;
+
+/// w, x, y, z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quaternion<M> {
+    w: Wide<M, 62>,
+    x: Wide<M, 62>,
+    y: Wide<M, 62>,
+    z: Wide<M, 62>,
+}
+
+/// A turn about a horizontal axis: (cos, −sin z, 0, sin x) with the horizontal direction (x, z) that it
+/// brings up.
+#[derive(Clone, Copy, Debug)]
+pub struct Levelling<M> {
+    /// cos φ/2.
+    pub cos: Q<M, 30>,
+    /// x sin φ/2.
+    pub x: Q<M, 30>,
+    /// z sin φ/2.
+    pub z: Q<M, 30>,
+}
+
+impl<M: Multiply> Quaternion<M> {
+    /// No turn.
+    pub const IDENTITY: Self = Self {
+        w: Wide::from_bits(1 << 62),
+        x: Wide::from_bits(0),
+        y: Wide::from_bits(0),
+        z: Wide::from_bits(0),
+    };
+
+    /// w, x, y and z, rounded down.
+    #[inline(always)]
+    pub fn upper(self) -> [Q<M, 30>; 4] {
+        [self.w, self.x, self.y, self.z].map(Wide::upper)
+    }
+
+    /// q (1, t): a turn in the body's own axes; √(1 + t²) times as long.
+    #[inline(always)]
+    pub fn turned_in_body(self, t: Vector<M, 32>) -> Self {
+        let [w, x, y, z] = self.upper();
+        Self {
+            w: self.w.plus(x, -t.x).plus(y, -t.y).plus(z, -t.z),
+            x: self.x.plus(w, t.x).plus(y, t.z).plus(z, -t.y),
+            y: self.y.plus(w, t.y).plus(z, t.x).plus(x, -t.z),
+            z: self.z.plus(w, t.z).plus(x, t.y).plus(y, -t.x),
+        }
+    }
+
+    /// (1, −t_z, 0, t_x) q: a turn about a horizontal axis of the world, √(1 + t²) times as long.
+    #[inline(always)]
+    pub fn levelled_a_little(self, t_x: Q<M, 32>, t_z: Q<M, 32>) -> Self {
+        let [w, x, y, z] = self.upper();
+        Self {
+            w: self.w.plus(x, t_z).plus(z, -t_x),
+            x: self.x.plus(w, -t_z).plus(y, -t_x),
+            y: self.y.plus(x, t_x).plus(z, t_z),
+            z: self.z.plus(w, t_x).plus(y, -t_z),
+        }
+    }
+
+    /// The same for any angle.
+    #[inline]
+    pub fn levelled(self, turn: Levelling<M>) -> Self {
+        let [w, x, y, z] = self.upper();
+        let Levelling {
+            cos,
+            x: s_x,
+            z: s_z,
+        } = turn;
+        // What is added, as Q60: a factor of one would be for the whole, not for its upper half.
+        let c = cos - const { Q::constant(1.0) };
+        let and = |whole: Wide<M, 62>, q60: i64| Wide::from_bits(whole.bits() + (q60 << 2));
+        Self {
+            w: and(self.w, c.wide(w) + s_z.wide(x) - s_x.wide(z)),
+            x: and(self.x, c.wide(x) - s_z.wide(w) - s_x.wide(y)),
+            y: and(self.y, c.wide(y) + s_x.wide(x) + s_z.wide(z)),
+            z: and(self.z, c.wide(z) + s_x.wide(w) - s_z.wide(y)),
+        }
+    }
+
+    /// q a q⁻¹ |q|²: a vector of the body as seen from the world. Counts in, with 15 fraction bits, and
+    /// |q|² − 1; counts out, with 12.
+    ///
+    /// |q|² a + 2 v × (v × a + w a) with the vector part v: what is in the brackets is no longer than a,
+    /// and the 2 is in the formats.
+    #[inline(always)]
+    pub fn in_world(self, counts: [i16; 3], excess: Q<M, 32>) -> Vector<M, 12> {
+        let [w, x, y, z] = self.upper();
+        let a: Vector<M, 15> = Vector::from_counts(counts);
+        let inner: Vector<M, 15> = Vector::<M, 13>::new(
+            Q::product(w, a.x).plus(y, a.z).minus(z, a.y),
+            Q::product(w, a.y).plus(z, a.x).minus(x, a.z),
+            Q::product(w, a.z).plus(x, a.y).minus(y, a.x),
+        )
+        .finer();
+        let outer = Vector::<M, 12>::from_counts(counts).grown(excess);
+        // A product has 13 fraction bits; read with 12 it is twice as large.
+        let twice = |q: Q<M, 30>| Q::<M, 29>::from_bits(q.bits());
+        Vector {
+            x: outer.x.plus(twice(y), inner.z).minus(twice(z), inner.y),
+            y: outer.y.plus(twice(z), inner.x).minus(twice(x), inner.z),
+            z: outer.z.plus(twice(x), inner.y).minus(twice(y), inner.x),
+        }
+    }
+
+    /// |q|² − 1.
+    #[inline(always)]
+    fn excess(self) -> Q<M, 28> {
+        let [w, x, y, z] = self.upper();
+        // With half of the last bit that is kept.
+        let excess = Wide::<M, 60>::from_bits((1 << 31) - (1 << 60));
+        excess.plus(w, w).plus(x, x).plus(y, y).plus(z, z).upper()
+    }
+
+    /// q / |q|, within 5e-9 of unit length, if |q|² is within 1/128 of 1.
+    #[inline(always)]
+    pub fn normalised_nearby(self) -> Option<Self> {
+        let excess = self.excess();
+        let small = const { Q::<M, 28>::constant(1.0 / 128.0).bits() };
+        (-small..small)
+            .contains(&excess.bits())
+            .then(|| self.shortened(excess.finer()))
+    }
+
+    /// The same for |q|² from ¾ to below 1¼: what is left of a quarter is 1e-3, then 1e-13.
+    #[inline]
+    pub fn normalised(self) -> Self {
+        let nearly = self.shortened(self.excess().finer());
+        nearly.shortened(nearly.excess().finer())
+    }
+
+    /// q (1 + e)^−½ = q (1 − e/2 + 3e²/8 − 5e³/16 + …); leaves 35e⁴/128, 1e-9 for e = 1/128.
+    #[inline(always)]
+    fn shortened(self, e: Q<M, 33>) -> Self {
+        let inner = const { Q::<M, 30>::constant(3.0 / 8.0) }
+            .minus(e, const { Q::<M, 29>::constant(5.0 / 16.0) });
+        let series = const { Q::<M, 31>::constant(-0.5) }.plus(e, inner);
+        let share: Q<M, 32> = Q::product(e, series);
+        let [w, x, y, z] = self.upper();
+        Self {
+            w: self.w.plus(w, share),
+            x: self.x.plus(x, share),
+            y: self.y.plus(y, share),
+            z: self.z.plus(z, share),
+        }
+    }
+}

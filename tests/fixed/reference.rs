@@ -1,0 +1,214 @@
+//! Beside the readable filter in double precision, on the same counts.
+
+use crate::random::Random;
+use vrduino::calibration::GyroBias;
+use vrduino::fixed::complementary::{Bias, Complementary, Nanoseconds, Parameters};
+use vrduino::nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use vrduino::orientation::{TimeConstant, complementary};
+use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample, Sample};
+use vrduino::units::{AngularRate, Seconds, SpecificForce};
+
+const PERIOD: f64 = 1e-3;
+const SAMPLES: usize = 20_000;
+const SEEDS: u64 = 24;
+/// What the integers may be off by, in degrees.
+const ALLOWED: f64 = 1e-4;
+
+pub fn orientation(filter: &Complementary) -> UnitQuaternion<f64> {
+    let [w, x, y, z] = filter
+        .bits()
+        .map(|bits| f64::from(bits) / f64::from(1 << 30));
+    UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z))
+}
+
+/// The angle between two, in degrees; by the sine of its half, which keeps its digits near zero.
+pub fn degrees_apart(a: UnitQuaternion<f64>, b: UnitQuaternion<f64>) -> f64 {
+    2.0 * (a.inverse() * b).imag().norm().min(1.0).asin().to_degrees()
+}
+
+/// Both filters.
+pub struct Pair {
+    ranges: Ranges,
+    bias: GyroBias<f64>,
+    fixed: Complementary,
+    reference: complementary::Complementary<f64>,
+}
+
+impl Pair {
+    pub fn new(ranges: Ranges, time: f32, bias_parts: [i32; 3]) -> Self {
+        let mut fixed = Complementary::new(&Parameters {
+            gyro: ranges.gyro,
+            sample_period: Nanoseconds(1_000_000),
+            time_constant: TimeConstant::new(Seconds(time)),
+        });
+        fixed.set_bias(Bias::from_parts_of_counts(bias_parts));
+        let dps_per_part = ranges.gyro.max_dps() / f64::from(1 << 30);
+        let dps = Vector3::from(bias_parts.map(|part| f64::from(part) * dps_per_part));
+        Self {
+            ranges,
+            bias: GyroBias::new(AngularRate::from_dps(dps)),
+            fixed,
+            reference: complementary::Complementary::new(
+                TimeConstant::new(Seconds(f64::from(time))),
+                Seconds(PERIOD),
+            ),
+        }
+    }
+
+    pub fn reset(&mut self, raw: &RawSample) {
+        self.fixed.reset(raw.accel);
+        self.reference.reset(self.ranges.sample(raw).force);
+    }
+
+    /// Both take the sample; how far apart they are then, in degrees.
+    pub fn update(&mut self, raw: &RawSample) -> f64 {
+        self.fixed.update(raw);
+        let reading = self.bias.correct(self.ranges.sample(raw));
+        let reference = self.reference.update(&reading);
+        degrees_apart(reference, orientation(&self.fixed))
+    }
+}
+
+/// A body that turns by sines about each of its axes, and a sensor with noise.
+struct Motion {
+    random: Random,
+    ranges: Ranges,
+    truth: UnitQuaternion<f64>,
+    amplitude_dps: [f64; 3],
+    hertz: [f64; 3],
+    bias_dps: [f64; 3],
+    step: usize,
+}
+
+impl Motion {
+    fn new(seed: u64, ranges: Ranges, start: UnitQuaternion<f64>, dps: f64, hertz: f64) -> Self {
+        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+        for _ in 0..10 {
+            random.unit();
+        }
+        Self {
+            amplitude_dps: [(); 3].map(|()| dps * random.between(0.3, 1.0)),
+            hertz: [(); 3].map(|()| hertz * random.between(0.3, 1.0)),
+            bias_dps: random.vector(5.0),
+            random,
+            ranges,
+            truth: start,
+            step: 0,
+        }
+    }
+
+    /// About normal, with a deviation of 1.
+    fn noise(&mut self) -> f64 {
+        (0..12).map(|_| self.random.unit()).sum::<f64>() - 6.0
+    }
+
+    fn next(&mut self) -> RawSample {
+        let t = self.step as f64 * PERIOD;
+        self.step += 1;
+        let axes = Vector3::new(0, 1, 2);
+        let dps = axes.map(|axis: usize| {
+            self.amplitude_dps[axis] * (core::f64::consts::TAU * self.hertz[axis] * t).sin()
+        });
+        self.truth *= UnitQuaternion::from_scaled_axis(dps * (PERIOD.to_radians()));
+        let up = self.truth.inverse() * Vector3::y();
+        let measured_dps = dps + axes.map(|axis: usize| self.bias_dps[axis] + 0.1 * self.noise());
+        let measured_g = up + axes.map(|_: usize| 0.005 * self.noise());
+        self.ranges.counts(&Sample {
+            rate: AngularRate::from_dps(measured_dps),
+            force: SpecificForce::from_g(measured_g),
+        })
+    }
+
+    /// In 2⁻¹⁵ counts, as a measurement of it would have it.
+    fn bias_parts(&self) -> [i32; 3] {
+        let parts_per_dps = f64::from(1 << 30) / self.ranges.gyro.max_dps();
+        self.bias_dps.map(|dps| (dps * parts_per_dps) as i32)
+    }
+}
+
+const FAST: Ranges = Ranges {
+    gyro: GyroRange::Dps2000,
+    accel: AccelRange::G2,
+};
+
+fn about(seed: u64) -> UnitQuaternion<f64> {
+    let mut random = Random(seed * 77 + 5);
+    UnitQuaternion::from_scaled_axis(Vector3::from(random.vector(1.5)))
+}
+
+/// The largest difference of 20 s.
+fn worst(mut motion: Motion, time: f32, levelled: bool) -> f64 {
+    let mut pair = Pair::new(motion.ranges, time, motion.bias_parts());
+    let first = motion.next();
+    if levelled {
+        pair.reset(&first);
+    }
+    let mut worst = pair.update(&first);
+    for _ in 1..SAMPLES {
+        worst = worst.max(pair.update(&motion.next()));
+    }
+    worst
+}
+
+fn check(name: &str, worst: impl Fn(u64) -> f64) {
+    let worst = (1..=SEEDS).map(worst).fold(0.0, f64::max);
+    println!("{name}: {worst:.2e} degrees at most");
+    assert!(worst <= ALLOWED, "{name}: {worst:e} degrees");
+}
+
+#[test]
+fn it_follows_the_reference_at_rest() {
+    check("at rest", |seed| {
+        worst(Motion::new(seed, FAST, about(seed), 0.0, 1.0), 7.6, true)
+    });
+}
+
+#[test]
+fn it_follows_the_reference_on_a_head() {
+    check("head", |seed| {
+        worst(Motion::new(seed, FAST, about(seed), 300.0, 2.0), 7.6, true)
+    });
+}
+
+#[test]
+fn it_follows_the_reference_at_the_ends_of_the_range() {
+    check("fast", |seed| {
+        worst(Motion::new(seed, FAST, about(seed), 1990.0, 3.0), 7.6, true)
+    });
+}
+
+/// From the identity, though the body hangs upside down: nearly all the way on the path for large tilts.
+#[test]
+fn it_follows_the_reference_from_a_flipped_start() {
+    check("flipped", |seed| {
+        let mut random = Random(seed * 31 + 1);
+        let axis = Vector3::new(random.between(-1.0, 1.0), 0.0, random.between(-1.0, 1.0));
+        let angle = random.between(2.6, 3.1);
+        let start = UnitQuaternion::from_scaled_axis(axis.normalize() * angle);
+        let time = random.between(0.3, 7.6) as f32;
+        worst(Motion::new(seed, FAST, start, 20.0, 0.5), time, false)
+    });
+}
+
+/// α of 0.9 and below: 10 ms is one of 0.909, 1 ms of 0.5, and 0 of 0, the accelerometer's tilt alone.
+#[test]
+fn it_follows_the_reference_with_short_time_constants() {
+    for time in [0.1, 0.01, 0.005, 0.001, 0.0] {
+        check(&format!("{time} s"), |seed| {
+            worst(Motion::new(seed, FAST, about(seed), 200.0, 2.0), time, true)
+        });
+    }
+}
+
+#[test]
+fn it_follows_the_reference_in_every_range() {
+    for gyro in GyroRange::ALL {
+        for accel in AccelRange::ALL {
+            let ranges = Ranges { gyro, accel };
+            check(&format!("{ranges:?}"), |seed| {
+                let dps = gyro.max_dps() / 3.0;
+                worst(Motion::new(seed, ranges, about(seed), dps, 2.0), 7.6, true)
+            });
+        }
+    }
+}
