@@ -1,5 +1,5 @@
 //! Decimals written without floating point: exactly rounded, and without the tables of the standard
-//! library, which are a sixth of the image.
+//! library.
 
 use core::fmt::{self, Write};
 use nalgebra::{RealField, try_convert};
@@ -20,7 +20,7 @@ impl fmt::Display for Decimal {
 }
 
 impl Decimal {
-    /// The same without a formatter, which costs a line of the stream more than its numbers.
+    /// The same without a formatter.
     ///
     /// # Errors
     ///

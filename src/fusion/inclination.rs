@@ -1,6 +1,6 @@
 //! Tilt without drift from gyro and accelerometer; the heading is the gyro's.
 
-use super::parameters::{Parameters, low_pass_weight_of, samples, share, size, weight};
+use super::parameters::{Parameters, samples, share, size, tilt_low_pass_weight, weight};
 use crate::orientation::quaternion::trued;
 use crate::orientation::{gyro, tilt};
 use crate::units::{AngularRate, METRES_PER_S2_PER_G, Seconds, SpecificForce};
@@ -36,7 +36,7 @@ impl<T: RealField + Copy> Coefficients<T> {
         let twice_damping = parameters.damping * convert(2.0);
         Self {
             half_period: size(period.0) * convert(0.5),
-            low_pass: low_pass_weight_of(parameters, period),
+            low_pass: tilt_low_pass_weight(parameters, period),
             correction: weight(natural * period.0 / twice_damping),
             per_g: convert(1.0 / METRES_PER_S2_PER_G),
             start: samples(parameters.start_time, period),

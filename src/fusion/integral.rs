@@ -4,7 +4,7 @@
 use super::bias::Source;
 use super::inclination::Inclination;
 use super::parameters::{
-    DECIMATION, Parameters, Rates, low_pass_weight_of, samples, scalar, size, weight,
+    DECIMATION, Parameters, Rates, samples, scalar, size, tilt_low_pass_weight, weight,
 };
 use crate::units::Seconds;
 use nalgebra::{RealField, Vector3, convert};
@@ -56,7 +56,7 @@ impl<T: RealField + Copy> Coefficients<T> {
         Self {
             period: size(rates.sample.0),
             field_period: size(rates.field.0),
-            low_pass: low_pass_weight_of(parameters, Seconds(rates.sample.0 * every)),
+            low_pass: tilt_low_pass_weight(parameters, Seconds(rates.sample.0 * every)),
             tilt: size(parameters.tilt_integral * rates.sample.0 * every),
             tilt_start: size(parameters.tilt_integral_start.0),
             tilt_start_samples: samples(parameters.tilt_integral_start, rates.sample),

@@ -105,7 +105,7 @@ pub(super) fn low_pass_weight<T: RealField + Copy>(time: Seconds<T>, period: Sec
 pub(super) const DECIMATION: u32 = 8;
 
 /// The share of the newest in the low-pass of the tilt's error, 1 − exp(−2ζω₀Δt) with ω₀ = √2/τ.
-pub(super) fn low_pass_weight_of<T: RealField + Copy>(
+pub(super) fn tilt_low_pass_weight<T: RealField + Copy>(
     parameters: &Parameters<T>,
     period: Seconds<T>,
 ) -> T {

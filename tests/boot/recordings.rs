@@ -137,18 +137,21 @@ fn up_in_body(body_to_world: [f64; 4]) -> [f64; 3] {
 }
 
 #[test]
+// Ignored without the recordings: they are a benchmark's data, which this repository does not carry.
 #[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn follows_a_recorded_slow_rotation() {
     follows_recording("02_undisturbed_slow_rotation_B.imub");
 }
 
 #[test]
+// Ignored without the recordings: they are a benchmark's data, which this repository does not carry.
 #[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn follows_a_recorded_fast_rotation() {
     follows_recording("06_undisturbed_fast_rotation_A.imub");
 }
 
 #[test]
+// Ignored without the recordings: they are a benchmark's data, which this repository does not carry.
 #[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn follows_a_recorded_fast_translation() {
     follows_recording("15_undisturbed_fast_translation_A.imub");

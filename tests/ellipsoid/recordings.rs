@@ -24,6 +24,7 @@ fn recorded(name: &str) -> Result<Magnetometer<f32>, Refusal<f32>> {
 }
 
 #[test]
+// Ignored without the recordings: they are a benchmark's data, which this repository does not carry.
 #[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn what_is_calibrated_already_stays_as_it_is() {
     for name in [
@@ -43,6 +44,7 @@ fn what_is_calibrated_already_stays_as_it_is() {
 }
 
 #[test]
+// Ignored without the recordings: they are a benchmark's data, which this repository does not carry.
 #[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn a_magnet_that_stands_beside_it_is_refused() {
     let refusal = recorded("28_disturbed_stationary_magnet_A.imub").expect_err("disturbed");
@@ -50,6 +52,7 @@ fn a_magnet_that_stands_beside_it_is_refused() {
 }
 
 #[test]
+// Ignored without the recordings: they are a benchmark's data, which this repository does not carry.
 #[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn a_board_that_is_carried_without_being_turned_is_refused() {
     let refusal = recorded("15_undisturbed_fast_translation_A.imub").expect_err("one direction");

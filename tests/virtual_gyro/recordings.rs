@@ -135,6 +135,7 @@ fn follows(name: &str) -> Score {
 }
 
 #[test]
+// Ignored without the recordings: they are a benchmark's data, which this repository does not carry.
 #[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn follows_the_gyro_of_a_recorded_slow_rotation() {
     let score = follows("02_undisturbed_slow_rotation_B.imub");
@@ -144,6 +145,7 @@ fn follows_the_gyro_of_a_recorded_slow_rotation() {
 }
 
 #[test]
+// Ignored without the recordings: they are a benchmark's data, which this repository does not carry.
 #[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn follows_the_gyro_of_a_recorded_fast_rotation() {
     let score = follows("06_undisturbed_fast_rotation_A.imub");
@@ -153,6 +155,7 @@ fn follows_the_gyro_of_a_recorded_fast_rotation() {
 }
 
 #[test]
+// Ignored without the recordings: they are a benchmark's data, which this repository does not carry.
 #[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn a_recorded_fast_translation_is_beyond_it() {
     // The device is accelerated by more than 1 g half of the time: nothing tells gravity from that.

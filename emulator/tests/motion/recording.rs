@@ -164,6 +164,7 @@ fn broken_recordings_are_refused() {
 
 /// Real recordings: gravity is up in the world where the sensor rests, so axes and signs agree.
 #[test]
+// Ignored without the recordings: they are a benchmark's data, which this repository does not carry.
 #[ignore = "needs VRDUINO_MOTIONS, a folder of recorded motions, which are not kept here"]
 fn recorded_motions_rest_upright_and_turn_as_their_reference() {
     let folder =
