@@ -10,7 +10,7 @@ mod lecture;
 
 use matrices::{Matrix, apply, degrees_between, largest_difference, product, transpose, turn};
 use nalgebra::{Matrix4, Point3, Quaternion, RealField, UnitQuaternion, Vector3, convert};
-use random::Random;
+use random::{ODD, Random};
 use std::f64::consts::{FRAC_PI_2, PI};
 use vrduino::calibration::{GyroBias, Reading};
 use vrduino::orientation::TimeConstant;

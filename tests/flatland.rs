@@ -9,7 +9,7 @@ mod corners;
 
 use matrices::larger;
 use nalgebra::{RealField, Vector3, convert};
-use random::Random;
+use random::{ODD, Random};
 use std::f64::consts::{PI, TAU};
 use vrduino::calibration::{GyroBias, Reading};
 use vrduino::orientation::TimeConstant;

@@ -11,7 +11,7 @@ use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
 use rotations::{
     IDENTITY, Random, angle_between, anything, apply, assert_is_a_rotation, exponential,
     gyro as notes_step, larger, largest_difference, matrix, product, random_quaternion, reading,
-    rotation, tilt as notes_tilt, transpose, unit_quaternion,
+    rotation, tilt as notes_tilt, times, transpose, unit_quaternion,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use vrduino::orientation::complementary::Complementary;
@@ -178,15 +178,7 @@ fn a_board_turned_upside_down_is_found_again() {
 fn survives_anything<T: RealField + Copy>(tolerance: f64) {
     let mut random = Random(14);
     for round in 0..100 {
-        let (tau, dt) = match round {
-            0 => (7.6, DT),
-            1 => (7.6, 1e30),
-            2 => (0.0, DT),
-            3 => (-DT, DT),
-            _ => (anything(&mut random), anything(&mut random)),
-        };
-        let (tau, dt) = (convert::<f64, T>(tau), Seconds(convert::<f64, T>(dt)));
-        let tau = TimeConstant::new(Seconds(tau));
+        let (tau, dt) = times::<T>(round, &mut random);
         let mut filter = Complementary::new(tau, dt);
         let mut gyro = DeadReckoning::new(dt);
         for _ in 0..1000 {

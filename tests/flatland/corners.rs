@@ -46,22 +46,12 @@ fn no_time_no_turn_and_no_input_leaves_the_circle() {
     let mut still = filter(0.9, 0.0);
     still.start_at(Angle::from_rad(0.3));
     assert_eq!(still.update(&reading(1e9, tilted(0.3))).gyro.rad(), 0.3);
-    let odd = [
-        0.0,
-        -1.0,
-        1e-40,
-        1e30,
-        f64::MAX,
-        f64::NAN,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-    ];
-    for dt in odd {
-        for tau in odd {
+    for dt in ODD {
+        for tau in ODD {
             let mut flat = Flatland::new(TimeConstant::new(Seconds(tau)), Seconds(dt));
-            for rate in odd {
-                for x in odd {
-                    for y in odd {
+            for rate in ODD {
+                for x in ODD {
+                    for y in ODD {
                         let roll = flat.update(&reading(rate, [x, y, 0.0]));
                         for angle in [roll.gyro, roll.accelerometer, roll.fused] {
                             assert!(angle.rad().abs() <= PI + 1e-9);

@@ -2,6 +2,18 @@
 
 #![allow(dead_code)] // Every test file uses its own part of this.
 
+/// What a careless caller or a broken sensor may pass for a number.
+pub const ODD: [f64; 8] = [
+    0.0,
+    -1.0,
+    1e-40,
+    1e30,
+    f64::MAX,
+    f64::NAN,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+];
+
 /// Reproducible random numbers (xorshift64*).
 pub struct Random(pub u64);
 

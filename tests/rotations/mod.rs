@@ -7,8 +7,9 @@ use std::f64::consts::PI;
 
 use nalgebra::{Quaternion, RealField, UnitQuaternion, Vector3, convert};
 use vrduino::calibration::{GyroBias, Reading};
+use vrduino::orientation::TimeConstant;
 use vrduino::sensor::Sample;
-use vrduino::units::{AngularRate, SpecificForce};
+use vrduino::units::{AngularRate, Seconds, SpecificForce};
 
 pub use crate::matrices::*;
 pub use crate::random::Random;
@@ -139,4 +140,20 @@ pub fn random_quaternion(random: &mut Random) -> [f64; 4] {
 pub fn unit_quaternion<T: RealField + Copy>([w, x, y, z]: [f64; 4]) -> UnitQuaternion<T> {
     let c = convert::<f64, T>;
     UnitQuaternion::new_unchecked(Quaternion::new(c(w), c(x), c(y), c(z)))
+}
+
+/// Time constant and sample period of a round: the usual ones, the corners, and then anything.
+pub fn times<T: RealField + Copy>(
+    round: usize,
+    random: &mut Random,
+) -> (TimeConstant<T>, Seconds<T>) {
+    let (tau, dt) = match round {
+        0 => (7.6, 0.001),
+        1 => (7.6, 1e30),
+        2 => (0.0, 0.001),
+        3 => (-0.001, 0.001),
+        _ => (anything(random), anything(random)),
+    };
+    let [tau, dt] = [tau, dt].map(|time| Seconds(convert::<f64, T>(time)));
+    (TimeConstant::new(tau), dt)
 }
