@@ -45,7 +45,7 @@ fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> 
     tracker.set_magnetometer(adjustment);
     tracker.resume();
     loop {
-        let (sample, field) = board.next_sample()?;
+        let (sample, _timing, field) = board.next_sample()?;
         while let Some(command) = board.usb.command() {
             tracker.command(command, &mut |line| board.usb.send(line));
         }

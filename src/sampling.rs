@@ -19,7 +19,8 @@ pub struct Timing {
     pub micros: u64,
     /// The sensor's period as it was measured, in nanoseconds: the time between two samples.
     pub period_ns: u32,
-    /// Samples that the sensor took since the one before and that were never read.
+    /// Samples that the sensor took since the one before and that were never read; this one among them if it could not
+    /// be read and repeats the one before.
     pub lost: u32,
     /// Whether the sensor's clock is known: else `micros` may be off by tenths of a millisecond, and `period_ns` by one
     /// per cent.

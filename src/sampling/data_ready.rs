@@ -167,11 +167,13 @@ impl DataReady {
         Early::Repeat(self.stamp())
     }
 
-    /// The sample could not be read, the bus being in error or in use: it is lost if it was there.
-    pub fn miss(&mut self) {
+    /// The sample could not be read, the bus being in error or in use: it is lost. When will it have been ready?
+    pub fn miss(&mut self) -> Timing {
         self.lost += 1;
         self.not_yet = None;
+        let timing = self.stamp();
         self.pass();
+        timing
     }
 
     /// It was asked for at the moment `at`, and was there. When was it ready?

@@ -173,7 +173,7 @@ impl Bench {
         self.now += f64::from(wait) / self.ticks_per_us;
         if self.failing > 0 {
             self.failing -= 1;
-            self.ready.miss();
+            self.counts.told_lost += self.ready.miss().lost;
             self.now += 100.0;
             return;
         }
