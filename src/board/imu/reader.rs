@@ -29,6 +29,9 @@ use super::sampling::{Counts, Sampled};
 const TICK: u32 = 1000 * TICKS_PER_US;
 /// From a STOP to the next START at least: the STOP itself takes 3 µs.
 const PAUSE: u32 = 10 * TICKS_PER_US;
+/// What a measurement of the magnetometer takes at most. Behind a burst that comes late, while the loop locks, it waits
+/// for the next.
+const FIELD: u32 = 320 * TICKS_PER_US;
 /// From a START to the moment at which the status is read, until it was measured: three addresses and registers.
 const LEAD: u32 = 80 * TICKS_PER_US;
 /// Alarms after which a read that does not end is given up.
@@ -262,6 +265,7 @@ impl Reader {
         let Some(bus) = &mut self.bus else { return };
         match self.ready.not_yet(self.begun.wrapping_add(self.lead)) {
             Early::Again => {
+                self.alarm.set(TICK);
                 let _ = bus.receive_last_and_hold();
                 self.begun = timer::now();
                 bus.begin_again(ADDRESS << 1, true);
@@ -297,8 +301,9 @@ impl Reader {
     #[inline(always)]
     fn last(&mut self) {
         let Some(bus) = &mut self.bus else { return };
+        let room = self.ready.ticks_until_ask(timer::now());
         let next = match (self.job, &mut self.magnetometer) {
-            (Job::Sample, Some(magnetometer)) => magnetometer.sample(),
+            (Job::Sample, Some(magnetometer)) if room > self.lead + FIELD => magnetometer.sample(),
             _ => None,
         };
         let at = self.job.length() - 1;
