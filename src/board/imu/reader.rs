@@ -17,13 +17,13 @@ use vrduino::imu::magnetometer::polling::{self, ANSWER_LEN, Polling, Request};
 use vrduino::imu::{ADDRESS, magnetometer};
 use vrduino::sampling::Timing;
 use vrduino::sampling::data_ready::{DataReady, Early};
-use vrduino::sensor::{BURST_LEN, BURST_START, Burst, RAW_DATA_READY};
+use vrduino::sensor::{BURST_LEN, BURST_START, RAW_DATA_READY};
 
 use super::super::clock;
 use super::super::dma::Dma;
 use super::super::i2c::{Error, I2c};
 use super::super::timer::{self, Alarm, TICKS_PER_US};
-use super::sampling::{Counts, Sampled};
+use super::sampling::{Counts, Outcome, Sampled};
 
 /// Between the alarms while nothing is sampled.
 const TICK: u32 = 1000 * TICKS_PER_US;
@@ -173,7 +173,7 @@ impl Reader {
     }
 
     /// The read before has not ended.
-    #[inline(never)]
+    #[cold]
     fn overrun(&mut self) {
         self.stuck_alarms += 1;
         let mut error = Error::Busy;
@@ -182,7 +182,7 @@ impl Reader {
             self.break_off();
         }
         self.timing = self.ready.miss();
-        self.deliver(Err(error));
+        self.deliver(Outcome::Failed(error));
     }
 
     /// A byte has ended, other than those that DMA takes.
@@ -242,7 +242,7 @@ impl Reader {
     }
 
     /// Is there a new sample?
-    #[inline(always)]
+    #[inline(never)]
     fn status(&mut self) {
         let Some(bus) = &mut self.bus else { return };
         let status = bus.get();
@@ -260,7 +260,7 @@ impl Reader {
     }
 
     /// There was none.
-    #[inline(never)]
+    #[cold]
     fn ask_again(&mut self) {
         let Some(bus) = &mut self.bus else { return };
         match self.ready.not_yet(self.begun.wrapping_add(self.lead)) {
@@ -276,7 +276,7 @@ impl Reader {
                 let _ = bus.get();
                 self.step = Step::Idle;
                 self.timing = timing;
-                self.deliver(Ok(None));
+                self.deliver(Outcome::Nothing);
             }
         }
     }
@@ -298,7 +298,7 @@ impl Reader {
     }
 
     /// The last byte has come in.
-    #[inline(always)]
+    #[inline(never)]
     fn last(&mut self) {
         let Some(bus) = &mut self.bus else { return };
         let room = self.ready.ticks_until_ask(timer::now());
@@ -316,29 +316,22 @@ impl Reader {
         self.dma.put(at, bus.receive_last_and_hold());
         bus.begin_again(magnetometer::ADDRESS << 1, true);
         self.step = Step::AddressToWrite;
-        self.deliver_burst();
+        self.deliver(Outcome::New);
         self.job = Job::Field(request);
     }
 
     /// All bytes are there, and the bus is free.
-    #[inline(always)]
     fn end(&mut self) {
         self.step = Step::Idle;
         match self.job {
-            Job::Sample => self.deliver_burst(),
+            Job::Sample => self.deliver(Outcome::New),
             Job::Field(_) => self.take_answer(),
         }
     }
 
-    #[inline(always)]
-    fn deliver_burst(&mut self) {
-        let [burst @ .., _] = self.dma.bytes();
-        self.deliver(Ok(Some(burst)));
-    }
-
     #[inline(never)]
     fn take_answer(&mut self) {
-        let bytes = self.dma.bytes();
+        let bytes = self.dma.bytes().array();
         let answer = bytes.first_chunk::<ANSWER_LEN>();
         let measured = match (&mut self.magnetometer, answer) {
             (Some(magnetometer), Some(answer)) => magnetometer.answer(answer),
@@ -360,13 +353,13 @@ impl Reader {
         self.step = Step::Idle;
     }
 
-    #[inline(never)]
+    #[cold]
     fn fail(&mut self, error: Error) {
         self.break_off();
         match (self.job, &mut self.magnetometer) {
             (Job::Sample, _) => {
                 self.timing = self.ready.miss();
-                self.deliver(Err(error));
+                self.deliver(Outcome::Failed(error));
             }
             (Job::Field(_), Some(magnetometer)) => magnetometer.refuse(),
             (Job::Field(_), None) => {}
@@ -374,20 +367,26 @@ impl Reader {
     }
 
     /// Hands over what has come in, and sets the alarm for the next.
-    #[inline(always)]
-    fn deliver(&mut self, burst: Result<Option<Burst>, Error>) {
+    #[inline(never)]
+    fn deliver(&mut self, outcome: Outcome) {
         let wait = self.ready.ticks_until_ask(timer::now());
         self.alarm.set(wait.saturating_sub(self.lead).max(PAUSE));
         self.counts.lost = self.counts.lost.wrapping_add(self.timing.lost);
-        let sampled = Sampled {
-            burst,
-            timing: self.timing,
-            field: self.field.take(),
-        };
-        if self.results.enqueue(sampled).is_err() {
+        if self.results.ready() {
+            let sampled = Sampled {
+                outcome,
+                bytes: self.dma.bytes(),
+                timing: self.timing,
+                field: self.field.take(),
+            };
+            // SAFETY: there is room, and nobody else puts anything in.
+            unsafe { self.results.enqueue_unchecked(sampled) }
+        } else {
             self.counts.lost = self.counts.lost.wrapping_add(1);
         }
-        if let Some(loss) = self.magnetometer.as_ref().and_then(Polling::loss) {
+        if let Some(magnetometer) = &self.magnetometer
+            && let Some(loss) = magnetometer.loss()
+        {
             self.magnetometer = None;
             self.field = Some(Err(loss));
         }
