@@ -12,6 +12,8 @@
 //! The magnetometer is asked behind the burst, on the same hold of the bus, so that it delays no sample: 0.11 ms for
 //! its status, 0.29 ms for a measurement. What it says goes out with the next sample.
 
+use core::sync::atomic::{AtomicU32, Ordering};
+
 use heapless::spsc::Producer;
 use vrduino::imu::magnetometer::polling::{self, ANSWER_LEN, Polling, Request};
 use vrduino::imu::{ADDRESS, magnetometer};
@@ -36,6 +38,12 @@ const FIELD: u32 = 320 * TICKS_PER_US;
 const LEAD: u32 = 80 * TICKS_PER_US;
 /// Alarms after which a read that does not end is given up.
 const STUCK_ALARMS: u8 = 3;
+
+/// When the last sample was ready, in microseconds; wraps. Under a name that survives optimisation, so that the
+/// emulator can compare it with the truth.
+// SAFETY: no other item has this name.
+#[unsafe(export_name = "vrduino_data_ready_us")]
+static DATA_READY: AtomicU32 = AtomicU32::new(0);
 
 /// What the bus is used for.
 #[derive(Clone, Copy)]
@@ -372,6 +380,7 @@ impl Reader {
         let wait = self.ready.ticks_until_ask(timer::now());
         self.alarm.set(wait.saturating_sub(self.lead).max(PAUSE));
         self.counts.lost = self.counts.lost.wrapping_add(self.timing.lost);
+        DATA_READY.store(self.timing.micros as u32, Ordering::Relaxed);
         if self.results.ready() {
             let sampled = Sampled {
                 outcome,
