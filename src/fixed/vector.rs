@@ -47,6 +47,19 @@ impl<M: Multiply, const BITS: u32> Vector<M, BITS> {
         }
     }
 
+    /// So many times this.
+    #[inline(always)]
+    pub fn times<const FACTOR: u32, const PRODUCT: u32>(
+        self,
+        factor: Q<M, FACTOR>,
+    ) -> Vector<M, PRODUCT> {
+        Vector {
+            x: Q::product(self.x, factor),
+            y: Q::product(self.y, factor),
+            z: Q::product(self.z, factor),
+        }
+    }
+
     /// The same in a finer format, in which it has to fit.
     #[inline(always)]
     pub fn finer<const FINER: u32>(self) -> Vector<M, FINER> {
