@@ -15,7 +15,7 @@ mod compass;
 mod estimators;
 
 use crate::calibration::record::Record;
-use crate::calibration::{GyroBias, Reading, Rest, Stillness, Verdict};
+use crate::calibration::{Reading, Rest, Stillness, Verdict};
 use crate::command::request::UseCompass;
 use crate::command::{Command, Mode};
 use crate::orientation::flatland::Flatland;
@@ -239,16 +239,11 @@ impl Tracker {
         let field = measured.result.and_then(Result::ok);
         let field = field.filter(|_| self.follows_compass());
         let field = field.map(|field| self.calibration.field(field));
-        let mut sample = self.calibration.sample(self.ranges.sample(raw));
-        if self.stretch != 1.0 {
-            // The filters run at a fixed step; a longer one turns further.
-            sample.rate = AngularRate::from_rad_per_s(sample.rate.rad_per_s() * self.stretch);
-        }
-        let reading = self.track(sample, field);
-        self.measure(raw, sample.force, emit);
+        self.track(raw, field);
+        self.measure(raw, emit);
         self.tell_of_bias(emit);
         if self.phase != Phase::Starting {
-            self.show(&reading, health, emit);
+            self.show(raw, health, emit);
         }
     }
 
@@ -287,31 +282,55 @@ impl Tracker {
         self.ticks.is_multiple_of(samples)
     }
 
-    /// The default mode runs the chosen estimator and nothing else. Returns the sample without the
-    /// bias that it takes off.
+    /// The default mode runs the chosen estimator and nothing else.
     #[inline(never)] // a function of its own in the image, which the emulator times
-    fn track(&mut self, sample: Sample<f32>, field: Option<MagneticField<f32>>) -> Reading<f32> {
+    fn track(&mut self, raw: &RawSample, field: Option<MagneticField<f32>>) {
         match self.phase {
-            Phase::Starting => return GyroBias::zero().correct(sample),
-            Phase::Running => self.estimators.update(&sample, field),
-            Phase::Resetting => self.start(sample.force),
+            Phase::Starting => return,
+            Phase::Running => self
+                .estimators
+                .update(&self.stretched(self.sample(raw)), field),
+            Phase::Resetting => self.start(self.sample(raw).force),
             Phase::Releveling => {
-                self.estimators.level(sample.force);
-                self.flat.reset(sample.force);
+                let force = self.sample(raw).force;
+                self.estimators.level(force);
+                self.flat.reset(force);
                 self.phase = Phase::Running;
             }
         }
-        let reading = self.estimators.bias().correct(sample);
         match self.mode {
             Mode::Flat => {
-                self.flat.update(&reading);
+                self.flat.update(&self.reading(raw));
             }
             Mode::ThreeD => {
-                self.gyro.update(&reading);
+                self.gyro.update(&self.reading(raw));
             }
             Mode::Info | Mode::Gyro | Mode::Accel | Mode::Quaternion => {}
         }
-        reading
+    }
+
+    /// In physical units, with the force corrected and the gyro's bias still in it.
+    fn sample(&self, raw: &RawSample) -> Sample<f32> {
+        self.calibration.sample(self.ranges.sample(raw))
+    }
+
+    /// As it is to be integrated: the filters run at a fixed step, and where the sensor's is longer, it turns further in
+    /// one.
+    fn stretched(&self, sample: Sample<f32>) -> Sample<f32> {
+        if self.stretch == 1.0 {
+            return sample;
+        }
+        let bias = self.estimators.bias().rate().rad_per_s();
+        let turn = (sample.rate.rad_per_s() - bias) * self.stretch;
+        Sample {
+            rate: AngularRate::from_rad_per_s(bias + turn),
+            ..sample
+        }
+    }
+
+    /// The same without the bias that the estimator takes off.
+    fn reading(&self, raw: &RawSample) -> Reading<f32> {
+        self.estimators.bias().correct(self.sample(raw))
     }
 
     /// Yaw 0, and the tilt that this force (body frame) shows.
@@ -333,12 +352,7 @@ impl Tracker {
         self.flat.reset(SpecificForce::from_g(up));
     }
 
-    fn measure(
-        &mut self,
-        raw: &RawSample,
-        force: SpecificForce<f32>,
-        emit: &mut impl FnMut(&Line),
-    ) {
+    fn measure(&mut self, raw: &RawSample, emit: &mut impl FnMut(&Line)) {
         let Some(measurement) = &mut self.measurement else {
             return;
         };
@@ -362,7 +376,7 @@ impl Tracker {
                 if measurement.samples >= STILL_DEADLINE {
                     self.measurement = None;
                     if starting {
-                        self.start(force);
+                        self.start(self.sample(raw).force);
                         emit(&wire::text(
                             "warning: not still for 5 s, gyro bias unknown: lay the board down for two seconds",
                         ));
@@ -389,7 +403,7 @@ impl Tracker {
         }
     }
 
-    fn show(&self, reading: &Reading<f32>, health: &Health, emit: &mut impl FnMut(&Line)) {
+    fn show(&self, raw: &RawSample, health: &Health, emit: &mut impl FnMut(&Line)) {
         if self.mode == Mode::Info {
             if self.every(INFO_EVERY) {
                 self.show_info(health, emit);
@@ -409,11 +423,13 @@ impl Tracker {
                     &self.gyro.orientation(),
                     self.decimals,
                 ));
-                emit(&wire::angles(&angles::pitch_and_roll(reading.force())));
+                emit(&wire::angles(&angles::pitch_and_roll(
+                    self.sample(raw).force,
+                )));
                 emit(&fused());
             }
-            Mode::Gyro => emit(&wire::gyro(reading.rate())),
-            Mode::Accel => emit(&wire::force(reading.force())),
+            Mode::Gyro => emit(&wire::gyro(self.reading(raw).rate())),
+            Mode::Accel => emit(&wire::force(self.sample(raw).force)),
             Mode::Quaternion => emit(&fused()),
         }
     }
