@@ -36,7 +36,7 @@ use cortex_m::peripheral::NVIC;
 use mk20dx_hal::pac;
 use vrduino::calibration::record::Record;
 use vrduino::imu::magnetometer::MagnetometerError;
-use vrduino::sampling::Timing;
+use vrduino::sampling::{Lock, Timing};
 use vrduino::sensor::RawSample;
 use vrduino::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use vrduino::tracker::Health;
@@ -71,6 +71,7 @@ pub struct Board {
     /// Why the board runs on six axes, if it does.
     no_compass: Option<MagnetometerError<i2c::Error>>,
     introduced: bool,
+    lock: Lock,
 }
 
 impl Board {
@@ -105,6 +106,7 @@ impl Board {
             fault: None,
             no_compass: None,
             introduced: false,
+            lock: Lock::default(),
         }
     }
 
@@ -149,6 +151,15 @@ impl Board {
             self.tell_of_compass();
         }
         Ok((self.imu.sample, self.imu.timing, field.and_then(Result::ok)))
+    }
+
+    /// Chooses what the sensor is read by, from the next sample on.
+    pub fn lock_on(&mut self, lock: Lock) {
+        if lock != self.lock {
+            self.lock = lock;
+            self.usb.follow_frames(lock == Lock::Usb);
+            imu::lock_on(lock);
+        }
     }
 
     /// Counters for the INFO lines.

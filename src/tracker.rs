@@ -21,7 +21,7 @@ use crate::command::{Command, Mode};
 use crate::orientation::flatland::Flatland;
 use crate::orientation::gyro::DeadReckoning;
 use crate::orientation::{DEFAULT_TIME_CONSTANT, angles};
-use crate::sampling::Timing;
+use crate::sampling::{Lock, Timing};
 use crate::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use crate::sensor::{Ranges, RawSample, Sample};
 use crate::units::{AngularRate, MagneticField, Seconds, SpecificForce};
@@ -83,6 +83,7 @@ pub struct Tracker {
     ticks: u32,
     counts: Counts,
     timing: Timing,
+    lock: Lock,
     /// The measured period over [`SAMPLE_PERIOD`]: a turn between two samples is that much larger.
     stretch: f32,
 }
@@ -137,6 +138,7 @@ impl Tracker {
             ticks: 0,
             counts: Counts::default(),
             timing: Timing::default(),
+            lock: Lock::default(),
             stretch: 1.0,
         }
     }
@@ -199,6 +201,11 @@ impl Tracker {
         {
             self.estimators.guess_bias(gyro.bias);
         }
+    }
+
+    /// What the host wants the sensor to be read by.
+    pub fn lock(&self) -> Lock {
+        self.lock
     }
 
     /// What is to be kept, once after each change of it.
@@ -300,10 +307,10 @@ impl Tracker {
         }
         match self.mode {
             Mode::Flat => {
-                self.flat.update(&self.reading(raw));
+                self.flat.update(&self.step(raw));
             }
             Mode::ThreeD => {
-                self.gyro.update(&self.reading(raw));
+                self.gyro.update(&self.step(raw));
             }
             Mode::Info | Mode::Gyro | Mode::Accel | Mode::Quaternion => {}
         }
@@ -328,7 +335,13 @@ impl Tracker {
         }
     }
 
-    /// The same without the bias that the estimator takes off.
+    /// The same without the bias that the estimator takes off: what the views integrate.
+    fn step(&self, raw: &RawSample) -> Reading<f32> {
+        let sample = self.stretched(self.sample(raw));
+        self.estimators.bias().correct(sample)
+    }
+
+    /// In physical units, without the bias that the estimator takes off.
     fn reading(&self, raw: &RawSample) -> Reading<f32> {
         self.estimators.bias().correct(self.sample(raw))
     }

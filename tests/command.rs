@@ -6,6 +6,7 @@ mod random;
 use random::Random;
 use vrduino::command::request::{Choice, Request, Setting, UseCompass};
 use vrduino::command::{Command, Mode, Parser};
+use vrduino::sampling::Lock;
 use vrduino::wire::{Decimals, LINE_LEN};
 
 #[test]
@@ -74,6 +75,9 @@ fn every_verb_is_understood() {
         ),
         ("decimals", Request::Decimals(None)),
         ("decimals 5", Request::Decimals(Decimals::new(5))),
+        ("lock", Request::Lock(None)),
+        ("lock sensor", Request::Lock(Some(Lock::Sensor))),
+        ("lock usb", Request::Lock(Some(Lock::Usb))),
         ("compass", Request::Compass(None)),
         ("compass on", Request::Compass(Some(UseCompass::On))),
         ("compass auto", Request::Compass(Some(UseCompass::Auto))),
@@ -109,6 +113,7 @@ fn a_refusal_names_the_word_and_fits_a_line() {
         ("", ": no such verb, :help lists them"),
         ("HELP", "HELP: no such verb, :help lists them"),
         ("estimator kalman", "kalman: default or notes is wanted"),
+        ("lock moon", "moon: sensor or usb is wanted"),
         ("compass maybe", "maybe: auto, on or off is wanted"),
         ("get tau", "tau: no such setting, :set lists them"),
         ("set lead", "lead: a number like 0.98 is wanted"),

@@ -22,7 +22,7 @@ use super::timer::Alarm;
 use super::watchdog::Watchdog;
 use sampling::{Outcome, Samples};
 
-pub use sampling::counts;
+pub use sampling::{counts, lock_on};
 
 /// The sensor may take 100 ms from power-on to its first answer (data sheet, table 3).
 const START_UP_TRIES: u32 = 12;

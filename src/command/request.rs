@@ -4,6 +4,7 @@ use core::fmt;
 use heapless::String;
 
 use super::number;
+use crate::sampling::Lock;
 use crate::wire::Decimals;
 
 /// A line understood.
@@ -35,6 +36,8 @@ pub enum Request {
     Decimals(Option<Decimals>),
     /// `:bias`: what the gyro reads at rest, and how that is known.
     Bias,
+    /// `:lock` asks, `:lock sensor` and `:lock usb` choose: what decides when the sensor is read.
+    Lock(Option<Lock>),
 }
 
 /// When the heading follows the magnetometer.
@@ -316,6 +319,12 @@ pub fn parse(line: &str) -> Result<Request, Refusal> {
                 };
                 Some(decimals)
             }
+        }),
+        "lock" => Request::Lock(match next() {
+            None => None,
+            Some("sensor") => Some(Lock::Sensor),
+            Some("usb") => Some(Lock::Usb),
+            Some(other) => return refuse(other, Reason::Wanted("sensor or usb")),
         }),
         "get" => Request::Get(setting(verb, next())?),
         "set" => {

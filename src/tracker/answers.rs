@@ -4,6 +4,7 @@ use super::Tracker;
 use super::estimators::Estimators;
 use crate::command::request::{Choice, Refusal, Request, Setting, UseCompass};
 use crate::fusion::{FieldVerdict, Fusion, Motion, Source};
+use crate::sampling::Lock;
 use crate::units::AngularRate;
 use crate::wire::{self, Decimals, Line};
 
@@ -14,7 +15,7 @@ impl Tracker {
         match line {
             Err(refusal) => wire::text(format_args!("ERR {refusal}")),
             Ok(Request::Help) => wire::text(
-                "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals",
+                "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals lock",
             ),
             Ok(Request::Version) => wire::text(concat!("OK vrduino ", env!("CARGO_PKG_VERSION"))),
             Ok(Request::Estimator(choice)) => {
@@ -32,6 +33,7 @@ impl Tracker {
                 estimators.set_defaults();
                 self.decimals = Decimals::COURSE;
                 self.use_compass = UseCompass::default();
+                self.lock = Lock::default();
                 wire::text("OK defaults")
             }
             Ok(Request::Compass(choice)) => {
@@ -60,6 +62,12 @@ impl Tracker {
                 wire::text(format_args!("OK decimals {}", self.decimals.get()))
             }
             Ok(Request::Bias) => bias(estimators),
+            Ok(Request::Lock(lock)) => {
+                if let Some(lock) = lock {
+                    self.lock = lock;
+                }
+                wire::text(format_args!("OK lock {}", self.lock.name()))
+            }
         }
     }
 }

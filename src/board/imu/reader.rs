@@ -17,14 +17,15 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use heapless::spsc::Producer;
 use vrduino::imu::magnetometer::polling::{self, ANSWER_LEN, Polling, Request};
 use vrduino::imu::{ADDRESS, magnetometer};
-use vrduino::sampling::Timing;
 use vrduino::sampling::data_ready::{DataReady, Early};
+use vrduino::sampling::{Lock, Timing};
 use vrduino::sensor::{BURST_LEN, BURST_START, RAW_DATA_READY};
 
 use super::super::clock;
 use super::super::dma::Dma;
 use super::super::i2c::{Error, I2c};
 use super::super::timer::{self, Alarm, TICKS_PER_US};
+use super::super::usb;
 use super::sampling::{Counts, Outcome, Sampled};
 
 /// Between the alarms while nothing is sampled.
@@ -36,6 +37,11 @@ const PAUSE: u32 = 10 * TICKS_PER_US;
 const FIELD: u32 = 320 * TICKS_PER_US;
 /// From a START to the moment at which the status is read, until it was measured: three addresses and registers.
 const LEAD: u32 = 80 * TICKS_PER_US;
+/// From a START to the packet at its endpoint: addresses, burst, filter and frame. Locked on USB, that is how long ahead
+/// of the host's next frame a read begins.
+const AHEAD: u32 = 510 * TICKS_PER_US;
+/// Frames without word of which the host counts as away.
+const FRAMES_MISSED: u32 = 5;
 /// Alarms after which a read that does not end is given up.
 const STUCK_ALARMS: u8 = 3;
 
@@ -107,6 +113,7 @@ pub struct Reader {
     bus: Option<I2c>,
     job: Job,
     step: Step,
+    lock: Lock,
     ready: DataReady,
     /// When the read was begun, and how long it then took to come to the status.
     begun: u32,
@@ -133,6 +140,7 @@ impl Reader {
             bus: None,
             job: Job::Sample,
             step: Step::Idle,
+            lock: Lock::default(),
             ready: DataReady::new(TICKS_PER_US),
             begun: 0,
             lead: LEAD,
@@ -154,6 +162,14 @@ impl Reader {
         self.magnetometer = magnetometer;
         self.field = None;
         self.stuck_alarms = 0;
+    }
+
+    /// Chooses what the sensor is read by. Not to be interrupted.
+    pub fn lock_on(&mut self, lock: Lock) {
+        self.lock = lock;
+        if lock == Lock::Sensor {
+            self.ready.resume();
+        }
     }
 
     /// Gives the bus back. Not to be interrupted.
@@ -255,15 +271,20 @@ impl Reader {
         let Some(bus) = &mut self.bus else { return };
         let status = bus.get();
         let asked = self.begun.wrapping_add(self.lead);
-        if status & RAW_DATA_READY != 0 {
+        let new = status & RAW_DATA_READY != 0;
+        if new {
             self.dma.receive(1, BURST_LEN - 2);
             bus.hand_to_dma();
             self.dma.put(0, status);
             self.step = Step::Bytes;
-            self.timing = self.ready.new_sample(asked);
         } else {
             bus.refuse_last();
             self.step = Step::Unwanted;
+        }
+        match self.lock {
+            Lock::Usb => self.timing = self.ready.read_at(asked, new),
+            Lock::Sensor if new => self.timing = self.ready.new_sample(asked),
+            Lock::Sensor => {}
         }
     }
 
@@ -271,7 +292,11 @@ impl Reader {
     #[cold]
     fn ask_again(&mut self) {
         let Some(bus) = &mut self.bus else { return };
-        match self.ready.not_yet(self.begun.wrapping_add(self.lead)) {
+        let next = match self.lock {
+            Lock::Sensor => self.ready.not_yet(self.begun.wrapping_add(self.lead)),
+            Lock::Usb => Early::Repeat(self.timing),
+        };
+        match next {
             Early::Again => {
                 self.alarm.set(TICK);
                 let _ = bus.receive_last_and_hold();
@@ -308,10 +333,10 @@ impl Reader {
     /// The last byte has come in.
     #[inline(never)]
     fn last(&mut self) {
+        let room = self.until_next();
         let Some(bus) = &mut self.bus else { return };
-        let room = self.ready.ticks_until_ask(timer::now());
         let next = match (self.job, &mut self.magnetometer) {
-            (Job::Sample, Some(magnetometer)) if room > self.lead + FIELD => magnetometer.sample(),
+            (Job::Sample, Some(magnetometer)) if room > FIELD => magnetometer.sample(),
             _ => None,
         };
         let at = self.job.length() - 1;
@@ -374,11 +399,24 @@ impl Reader {
         }
     }
 
+    /// Ticks until the next read is to begin.
+    #[inline(always)]
+    fn until_next(&self) -> u32 {
+        let now = timer::now();
+        if self.lock == Lock::Usb
+            && let Some(wait) = until_ahead_of_frame(now)
+        {
+            return wait;
+        }
+        let wait = self.ready.ticks_until_ask(now);
+        wait.saturating_sub(self.lead).max(PAUSE)
+    }
+
     /// Hands over what has come in, and sets the alarm for the next.
     #[inline(never)]
     fn deliver(&mut self, outcome: Outcome) {
-        let wait = self.ready.ticks_until_ask(timer::now());
-        self.alarm.set(wait.saturating_sub(self.lead).max(PAUSE));
+        let wait = self.until_next();
+        self.alarm.set(wait);
         self.counts.lost = self.counts.lost.wrapping_add(self.timing.lost);
         DATA_READY.store(self.timing.micros as u32, Ordering::Relaxed);
         if self.results.ready() {
@@ -400,4 +438,15 @@ impl Reader {
             self.field = Some(Err(loss));
         }
     }
+}
+
+/// Ticks until [`AHEAD`] of a frame of the host, if there are frames.
+#[inline(never)]
+fn until_ahead_of_frame(now: u32) -> Option<u32> {
+    let since = now.wrapping_sub(usb::last_frame());
+    if since > FRAMES_MISSED * TICK {
+        return None;
+    }
+    let wait = (2 * TICK - AHEAD - since % TICK) % TICK;
+    Some(if wait < PAUSE { wait + TICK } else { wait })
 }

@@ -9,7 +9,7 @@ use core::cell::UnsafeCell;
 use heapless::spsc::{Consumer, Queue};
 use mk20dx_hal::pac::Interrupt;
 use vrduino::imu::magnetometer::polling::{Loss, Polling};
-use vrduino::sampling::Timing;
+use vrduino::sampling::{Lock, Timing};
 use vrduino::sensor::magnetometer::RawField;
 
 use super::super::breadcrumb::{self, Stage};
@@ -91,6 +91,11 @@ pub fn give(bus: I2c, magnetometer: Option<Polling>) {
 /// Takes the bus back, if the interrupts have it.
 pub fn take() -> Option<I2c> {
     look(Reader::take).flatten()
+}
+
+/// Chooses what the sensor is read by, from the next sample on.
+pub fn lock_on(lock: Lock) {
+    look(|reader| reader.lock_on(lock));
 }
 
 /// What has been counted so far.
