@@ -46,7 +46,7 @@ fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> 
     tracker.set_magnetometer(adjustment);
     tracker.resume();
     loop {
-        let (sample, timing, field) = board.next_sample()?;
+        let field = board.next_sample()?;
         while let Some(command) = board.usb.command() {
             tracker.command(command, &mut |line| board.usb.send(line));
         }
@@ -56,8 +56,10 @@ fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> 
         }
         breadcrumb::mark(Stage::Filter);
         let health = board.health();
-        tracker.timed(&timing);
-        tracker.update(&sample, field, &health, &mut |line| board.usb.send(line));
+        tracker.timed(&board.imu.timing);
+        tracker.update(&board.imu.sample, field, &health, &mut |line| {
+            board.usb.send(line)
+        });
         board.end_of_turn();
     }
 }
