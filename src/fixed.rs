@@ -6,6 +6,7 @@
 //! | `multiply` | the one operation all is made of, which a board can do its own way |
 //! | `number` | numbers whose fraction bits are in their type |
 //! | `vector`, `quaternion` | three and four of them |
+//! | `gyro` | the angles of a sample, of which nothing is rounded off |
 //! | `half_angle`, `arc`, `division` | small rotations, arcs and quotients without a library |
 //! | `inclination` | how far from level, eq. 20–23 |
 //! | `complementary` | the filter of eq. 24 |
@@ -34,6 +35,8 @@ pub mod number;
 pub mod vector;
 
 pub mod quaternion;
+
+mod gyro;
 
 mod half_angle;
 

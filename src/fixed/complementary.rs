@@ -3,23 +3,19 @@
 //! What it computes is [`orientation::complementary`](crate::orientation::complementary), which is the one to read
 //! first; here every step is put the way that costs least.
 
+use super::gyro::{Remainders, half_angle_per_count};
 use super::half_angle::{tangent_excess, tangent_squared};
-use super::inclination::{HalfAnglePerTangent, Share, anywhere, near_level};
+use super::inclination::{HalfAnglePerTangent, Share, levelled, near_level};
 use super::multiply::{Multiply, Portable};
-use super::number::{Q, Wide};
+use super::number::Q;
 use super::quaternion::Quaternion;
 use super::vector::Vector;
 use crate::calibration::GyroBias;
 use crate::orientation::TimeConstant;
 use crate::sensor::{GyroRange, RawSample};
-use crate::units::{RADIANS_PER_DEGREE, Seconds};
+use crate::units::Seconds;
 
-/// The time from one sample to the next in nanoseconds.
-///
-/// Single precision would keep seven digits of it, and a gyro that turned by 6000° would be off by a
-/// thousandth of a degree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Nanoseconds(pub u32);
+pub use super::gyro::Nanoseconds;
 
 /// What a person chooses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,16 +68,13 @@ impl<M: Multiply> Derived<M> {
     fn new(parameters: &Parameters) -> Self {
         let Parameters {
             gyro,
-            sample_period: Nanoseconds(nanoseconds),
+            sample_period,
             time_constant,
         } = *parameters;
-        let per_nanosecond = half_angle_per_nanosecond(gyro);
-        let half_angle = (per_nanosecond * u64::from(nanoseconds) + (1 << 22)) >> 23;
-        let share = Share::from_accelerometer_weight(
-            time_constant.accelerometer_weight(Seconds(nanoseconds as f32 * 1e-9)),
-        );
+        let seconds = Seconds(sample_period.0 as f32 * 1e-9);
+        let share = Share::from_accelerometer_weight(time_constant.accelerometer_weight(seconds));
         Self {
-            half_angle_per_count: Q::from_bits(half_angle.min(i32::MAX as u64) as i32),
+            half_angle_per_count: half_angle_per_count(gyro, sample_period),
             share,
             half_angle_per_tangent: match share {
                 Share::Little(share) => Some(HalfAnglePerTangent::new(share)),
@@ -90,23 +83,6 @@ impl<M: Multiply> Derived<M> {
         }
     }
 }
-
-/// Half a radian per second and count, as Q72 per nanosecond: ½ max_range / 2¹⁵ 10⁻⁹ 2⁷².
-const fn half_angle_per_nanosecond(gyro: GyroRange) -> u64 {
-    const PER_DPS: f64 = 0.5 * RADIANS_PER_DEGREE * 1e-9 * (1_u64 << 57) as f64;
-    const fn of(dps: f64) -> u64 {
-        (dps * PER_DPS + 0.5) as u64
-    }
-    match gyro {
-        GyroRange::Dps250 => const { of(GyroRange::Dps250.max_dps()) },
-        GyroRange::Dps500 => const { of(GyroRange::Dps500.max_dps()) },
-        GyroRange::Dps1000 => const { of(GyroRange::Dps1000.max_dps()) },
-        GyroRange::Dps2000 => const { of(GyroRange::Dps2000.max_dps()) },
-    }
-}
-
-/// Half of the last bit kept.
-const ROUNDING: u32 = 1 << 31;
 
 /// The complementary filter on quaternions, eq. 24, in integers.
 ///
@@ -133,8 +109,7 @@ const ROUNDING: u32 = 1 << 31;
 pub struct Complementary<M = Portable> {
     derived: Derived<M>,
     bias: Bias,
-    /// What the half angles of the samples so far have left below the last bit of theirs, as Q64.
-    remainders: [u32; 3],
+    remainders: Remainders,
     orientation: Quaternion<M>,
 }
 
@@ -151,7 +126,7 @@ impl<M: Multiply> Complementary<M> {
         Self {
             derived: Derived::new(parameters),
             bias: Bias::ZERO,
-            remainders: [ROUNDING; 3],
+            remainders: Remainders::START,
             orientation: Quaternion::IDENTITY,
         }
     }
@@ -186,7 +161,10 @@ impl<M: Multiply> Complementary<M> {
         let h_squared = h.norm_squared();
         let excess = tangent_excess(h_squared);
         let q_omega = self.orientation.turned_in_body(h.grown(excess));
-        let force = q_omega.in_world(accel, tangent_squared(h_squared, excess));
+        let force = q_omega.in_world(
+            Vector::from_counts(accel),
+            tangent_squared(h_squared, excess),
+        );
         (q_omega, force)
     }
 
@@ -205,10 +183,8 @@ impl<M: Multiply> Complementary<M> {
     #[inline(never)]
     fn update_anywhere(&mut self, sample: &RawSample) {
         let rates = self.rates(sample.gyro);
-        for (rest, rate) in self.remainders.iter_mut().zip(rates) {
-            let angle = Wide::<M, 64>::from_bits(0).plus(rate, self.derived.half_angle_per_count);
-            *rest = rest.wrapping_sub(angle.lower());
-        }
+        self.remainders
+            .take_back(rates, self.derived.half_angle_per_count);
         let h = self.half_angle(sample.gyro);
         let (q_omega, force) = self.turned(h, sample.accel);
         self.orientation = levelled(q_omega, force, self.derived.share);
@@ -216,25 +192,19 @@ impl<M: Multiply> Complementary<M> {
 
     /// In counts, with the bias off.
     #[inline(always)]
-    fn rates(&self, gyro: [i16; 3]) -> [Q<M, 15>; 3] {
+    fn rates(&self, gyro: [i16; 3]) -> Vector<M, 15> {
         let [x, y, z] = gyro;
         let Bias([bias_x, bias_y, bias_z]) = self.bias;
         let rate = |count: i16, bias: i32| Q::from_bits((i32::from(count) << 15) - bias);
-        [rate(x, bias_x), rate(y, bias_y), rate(z, bias_z)]
+        Vector::new(rate(x, bias_x), rate(y, bias_y), rate(z, bias_z))
     }
 
     /// n φ/2 of eq. 17, with the bias off. What is rounded off is carried over to the next sample.
     #[inline(always)]
     fn half_angle(&mut self, gyro: [i16; 3]) -> Vector<M, 32> {
-        let [x, y, z] = self.rates(gyro);
-        let [rest_x, rest_y, rest_z] = &mut self.remainders;
-        let of = |rate: Q<M, 15>, rest: &mut u32| {
-            let angle = Wide::<M, 64>::from_bits(i64::from(*rest))
-                .plus(rate, self.derived.half_angle_per_count);
-            *rest = angle.lower();
-            angle.upper()
-        };
-        Vector::new(of(x, rest_x), of(y, rest_y), of(z, rest_z))
+        let rates = self.rates(gyro);
+        self.remainders
+            .half_angle(rates, self.derived.half_angle_per_count)
     }
 
     /// w, x, y, z of the orientation as of the last sample, body to world.
@@ -257,21 +227,9 @@ impl<M: Multiply> Complementary<M> {
     /// Takes the tilt this force (counts, body frame) shows at once and keeps yaw. One without direction changes
     /// nothing.
     pub fn level(&mut self, accel: [i16; 3]) {
-        let force = self.orientation.in_world(accel, Q::ZERO);
+        let force = self
+            .orientation
+            .in_world(Vector::from_counts(accel), Q::ZERO);
         self.orientation = levelled(self.orientation, force, Share::WHOLE);
     }
-}
-
-/// By a share of any tilt, and normalised.
-#[inline]
-fn levelled<M: Multiply>(q: Quaternion<M>, force: Vector<M, 12>, share: Share) -> Quaternion<M> {
-    let levelled = match (anywhere(force), share) {
-        (None, _) => q,
-        (Some(tilt), Share::Little(share)) => {
-            let (x, z) = tilt.little(Q::from_bits(share));
-            q.levelled_a_little(x, z)
-        }
-        (Some(tilt), Share::Much(share)) => q.levelled(tilt.much(share)),
-    };
-    levelled.normalised()
 }

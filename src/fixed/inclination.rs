@@ -8,7 +8,7 @@ use super::division::{reciprocal, reciprocal_root};
 use super::half_angle::tangent_excess;
 use super::multiply::Multiply;
 use super::number::Q;
-use super::quaternion::Levelling;
+use super::quaternion::{Levelling, Quaternion};
 use super::vector::Vector;
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -142,9 +142,27 @@ impl<M: Multiply> Tilt<M> {
     }
 }
 
-/// (x, z) / √(x² + z²), and the root; none if both are zero.
+/// The orientation levelled by a share of any tilt, which the force in the world shows, and normalised.
 #[inline]
-fn horizontal<M: Multiply>(x: Q<M, 30>, z: Q<M, 30>) -> Option<(Q<M, 30>, Q<M, 30>, Q<M, 30>)> {
+pub fn levelled<M: Multiply>(
+    q: Quaternion<M>,
+    force: Vector<M, 12>,
+    share: Share,
+) -> Quaternion<M> {
+    let levelled = match (anywhere(force), share) {
+        (None, _) => q,
+        (Some(tilt), Share::Little(share)) => {
+            let (x, z) = tilt.little(Q::from_bits(share));
+            q.levelled_a_little(x, z)
+        }
+        (Some(tilt), Share::Much(share)) => q.levelled(tilt.much(share)),
+    };
+    levelled.normalised()
+}
+
+/// (x, z) / √(x² + z²), and the root, for x and z up to ½; none if both are zero.
+#[inline]
+pub fn horizontal<M: Multiply>(x: Q<M, 30>, z: Q<M, 30>) -> Option<(Q<M, 30>, Q<M, 30>, Q<M, 30>)> {
     let largest = x.bits().unsigned_abs() | z.bits().unsigned_abs();
     if largest == 0 {
         return None;

@@ -3,6 +3,7 @@
 //! The lower half is what a sample adds beyond them. Rounding it off would be off by as much again and again
 //! wherever the same few counts come again and again: a sensor at rest.
 
+use super::division::{reciprocal_length, shortening};
 use super::multiply::Multiply;
 use super::number::{Q, Wide};
 use super::vector::Vector;
@@ -87,29 +88,64 @@ impl<M: Multiply> Quaternion<M> {
         }
     }
 
-    /// q a q⁻¹ |q|²: a vector of the body as seen from the world. Counts in, with 15 fraction bits, and
-    /// |q|² − 1; counts out, with 12.
+    /// q a q⁻¹ |q|²: a vector of the body as seen from the world. 15 fraction bits in, and
+    /// |q|² − 1; 12 out.
     ///
     /// |q|² a + 2 v × (v × a + w a) with the vector part v: what is in the brackets is no longer than a,
     /// and the 2 is in the formats.
     #[inline(always)]
-    pub fn in_world(self, counts: [i16; 3], excess: Q<M, 32>) -> Vector<M, 12> {
+    pub fn in_world(self, a: Vector<M, 15>, excess: Q<M, 32>) -> Vector<M, 12> {
         let [w, x, y, z] = self.upper();
-        let a: Vector<M, 15> = Vector::from_counts(counts);
         let inner: Vector<M, 15> = Vector::<M, 13>::new(
             Q::product(w, a.x).plus(y, a.z).minus(z, a.y),
             Q::product(w, a.y).plus(z, a.x).minus(x, a.z),
             Q::product(w, a.z).plus(x, a.y).minus(y, a.x),
         )
         .finer();
-        let outer = Vector::<M, 12>::from_counts(counts).grown(excess);
+        let outer = a.coarser::<12>().grown(excess);
         // A product has 13 fraction bits; read with 12 it is twice as large.
-        let twice = |q: Q<M, 30>| Q::<M, 29>::from_bits(q.bits());
+        let twice = |q: Q<M, 30>| q.read_as::<29>();
         Vector {
             x: outer.x.plus(twice(y), inner.z).minus(twice(z), inner.y),
             y: outer.y.plus(twice(z), inner.x).minus(twice(x), inner.z),
             z: outer.z.plus(twice(x), inner.y).minus(twice(y), inner.x),
         }
+    }
+
+    /// The world's x as the body sees it: the first row of the rotation matrix.
+    #[inline(always)]
+    pub fn world_x(self) -> Vector<M, 27> {
+        let [w, x, y, z] = self.upper();
+        Vector::<M, 28>::new(
+            const { Q::constant(0.5) }.minus(y, y).minus(z, z),
+            Q::product(x, y).minus(w, z),
+            Q::product(x, z).plus(w, y),
+        )
+        .read_as()
+    }
+
+    /// The world's y, the vertical, as the body sees it: the second.
+    #[inline(always)]
+    pub fn world_y(self) -> Vector<M, 27> {
+        let [w, x, y, z] = self.upper();
+        Vector::<M, 28>::new(
+            Q::product(x, y).plus(w, z),
+            const { Q::constant(0.5) }.minus(x, x).minus(z, z),
+            Q::product(y, z).minus(w, x),
+        )
+        .read_as()
+    }
+
+    /// The world's z as the body sees it: the third.
+    #[inline(always)]
+    pub fn world_z(self) -> Vector<M, 27> {
+        let [w, x, y, z] = self.upper();
+        Vector::<M, 28>::new(
+            Q::product(x, z).minus(w, y),
+            Q::product(y, z).plus(w, x),
+            const { Q::constant(0.5) }.minus(x, x).minus(y, y),
+        )
+        .read_as()
     }
 
     /// |q|² − 1.
@@ -138,13 +174,25 @@ impl<M: Multiply> Quaternion<M> {
         nearly.shortened(nearly.excess().finer())
     }
 
-    /// q (1 + e)^−½ = q (1 − e/2 + 3e²/8 − 5e³/16 + …); leaves 35e⁴/128, 1e-9 for e = 1/128.
+    /// The same for |q|² from ¼ to below 4; none for any other.
+    #[inline]
+    pub fn normalised_anywhere(self) -> Option<Self> {
+        let length = reciprocal_length(self.excess())?;
+        let [w, x, y, z] = self.upper();
+        // Q30 times Q29, as Q62.
+        let whole = |q: Q<M, 30>| Wide::from_bits(q.wide(length) << 3);
+        Some(Self {
+            w: whole(w),
+            x: whole(x),
+            y: whole(y),
+            z: whole(z),
+        })
+    }
+
+    /// q (1 + e)^−½.
     #[inline(always)]
     fn shortened(self, e: Q<M, 33>) -> Self {
-        let inner = const { Q::<M, 30>::constant(3.0 / 8.0) }
-            .minus(e, const { Q::<M, 29>::constant(5.0 / 16.0) });
-        let series = const { Q::<M, 31>::constant(-0.5) }.plus(e, inner);
-        let share: Q<M, 32> = Q::product(e, series);
+        let share = shortening(e);
         let [w, x, y, z] = self.upper();
         Self {
             w: self.w.plus(w, share),
