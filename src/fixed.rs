@@ -10,6 +10,9 @@
 //! | `half_angle`, `arc`, `division` | small rotations, arcs and quotients without a library |
 //! | `inclination` | how far from level, eq. 20–23 |
 //! | `complementary` | the filter of eq. 24 |
+//! | `turn` | turns about the vertical |
+//! | `measurement` | forces and fields that have been corrected |
+//! | `fusion` | the estimator that is streamed by default |
 //!
 //! # Formats
 //!
@@ -47,3 +50,9 @@ mod division;
 mod inclination;
 
 pub mod complementary;
+
+mod turn;
+
+pub mod measurement;
+
+pub mod fusion;

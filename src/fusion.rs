@@ -23,13 +23,13 @@
 //!
 //! [`Complementary`]: crate::orientation::complementary::Complementary
 
-mod bias;
-mod disturbance;
-mod heading;
+pub(crate) mod bias;
+pub(crate) mod disturbance;
+pub(crate) mod heading;
 mod inclination;
-mod integral;
-mod parameters;
-mod rest;
+pub(crate) mod integral;
+pub(crate) mod parameters;
+pub(crate) mod rest;
 
 pub use bias::{Bias, Source};
 pub use disturbance::FieldVerdict;

@@ -3,6 +3,7 @@
 //! The lower half is what a sample adds beyond them. Rounding it off would be off by as much again and again
 //! wherever the same few counts come again and again: a sensor at rest.
 
+use super::arc::{cosine, sine_per_angle};
 use super::division::{reciprocal_length, shortening};
 use super::multiply::Multiply;
 use super::number::{Q, Wide};
@@ -37,6 +38,12 @@ impl<M: Multiply> Quaternion<M> {
         y: Wide::from_bits(0),
         z: Wide::from_bits(0),
     };
+
+    /// From w, x, y and z.
+    pub fn from_upper(parts: [Q<M, 30>; 4]) -> Self {
+        let [w, x, y, z] = parts.map(Wide::from_upper);
+        Self { w, x, y, z }
+    }
 
     /// w, x, y and z, rounded down.
     #[inline(always)]
@@ -201,4 +208,31 @@ impl<M: Multiply> Quaternion<M> {
             z: self.z.plus(z, share),
         }
     }
+}
+
+/// The product of two quaternions.
+pub fn product<M: Multiply>(a: [Q<M, 30>; 4], b: [Q<M, 30>; 4]) -> [Q<M, 30>; 4] {
+    let ([w, x, y, z], [d, e, f, g]) = (a, b);
+    // The sum of four Q60, rounded to Q30.
+    let rounded = |q60: i64| Q::from_bits(((q60 + (1 << 29)) >> 30) as i32);
+    [
+        rounded(w.wide(d) - x.wide(e) - y.wide(f) - z.wide(g)),
+        rounded(w.wide(e) + x.wide(d) + y.wide(g) - z.wide(f)),
+        rounded(w.wide(f) - x.wide(g) + y.wide(d) + z.wide(e)),
+        rounded(w.wide(g) + x.wide(f) - y.wide(e) + z.wide(d)),
+    ]
+}
+
+/// The turn at this rate, in counts, by so much of half an angle per count; of any size.
+pub fn step<M: Multiply>(rate: Vector<M, 15>, half_angle_per_count: Q<M, 45>) -> [Q<M, 30>; 4] {
+    let half = |rate| Q::<M, 28>::product(rate, half_angle_per_count);
+    // A quarter of it, for which the series are good, taken four times.
+    let quarter = |rate| half(rate).read_as::<30>();
+    let (x, y, z) = (quarter(rate.x), quarter(rate.y), quarter(rate.z));
+    let squared: Q<M, 29> = Q::<M, 28>::product(x, x).plus(y, y).plus(z, z).finer();
+    let sine = sine_per_angle(squared);
+    let along = |part| Q::<M, 28>::product(part, sine).finer::<30>();
+    let first = [cosine(squared), along(x), along(y), along(z)];
+    let twice = product(first, first);
+    product(twice, twice)
 }

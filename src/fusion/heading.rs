@@ -23,9 +23,9 @@ pub struct Heading<T: RealField> {
 }
 
 /// From this rate on the sensor turns, °/s.
-const TURNING_DPS: f64 = 20.0;
+pub const TURNING_DPS: f64 = 20.0;
 /// With a new reference the heading goes on as if it had followed it for so long, s.
-const RENEWED: f64 = 1.0;
+pub const RENEWED: f64 = 1.0;
 
 impl<T: RealField + Copy> Heading<T> {
     pub fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {

@@ -45,11 +45,11 @@ struct Coefficients<T> {
 }
 
 /// Until the first rest gains fall as one over a second, and the time since the start.
-const SECOND: f64 = 1.0;
+pub const SECOND: f64 = 1.0;
 /// An error of tilt beyond this (rad, 3°) is a knock's, not a bias's.
-const LARGEST_ERROR: f64 = 0.05;
+pub const LARGEST_ERROR: f64 = 0.05;
 /// The same of the heading (rad, 11°): beyond it the field is wrong.
-const LARGEST_HEADING_ERROR: f64 = 0.2;
+pub const LARGEST_HEADING_ERROR: f64 = 0.2;
 
 impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {

@@ -61,9 +61,9 @@ struct Coefficients<T> {
 }
 
 /// Calm for so many times as long as a rest takes outdoes a bias known before.
-const LONG: u32 = 4;
-/// Most the low-passed force may wander while nothing moves, m/s², squared: a turn of 1°.
-const WANDER: f64 = 0.17 * 0.17;
+pub const LONG: u32 = 4;
+/// Most the low-passed force may wander while nothing moves, m/s²: a turn of 1°.
+pub const WANDER: f64 = 0.17;
 
 impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
@@ -166,7 +166,7 @@ impl<T: RealField + Copy> Rest<T> {
         }
         let close = (rate - mean_rate).norm_squared() < rate_limit
             && (force - mean_force).norm_squared() < force_limit
-            && (mean_force - self.anchor).norm_squared() < convert(WANDER)
+            && (mean_force - self.anchor).norm_squared() < convert(WANDER * WANDER)
             && (is_known || plausible);
         self.rate = rate;
         if close {
