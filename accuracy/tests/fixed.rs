@@ -28,7 +28,10 @@ struct Recording {
 
 /// µT as a field in fixed point.
 fn parts(field: MagneticField<f64>) -> [i32; 3] {
-    field.microtesla().map(|part| (part * 32768.0).round() as i32).into()
+    field
+        .microtesla()
+        .map(|part| (part * 32768.0).round() as i32)
+        .into()
 }
 
 fn counted(axes: &NineAxes) -> (RawSample, [i32; 3]) {
@@ -52,8 +55,14 @@ fn at_1_khz(trial: &Trial) -> Recording {
         let index = (at as usize).min(trial.samples.len() - 2);
         let [before, after] = [trial.samples[index], trial.samples[index + 1]];
         let between = |a: Vector3<f64>, b: Vector3<f64>| a.lerp(&b, at - index as f64);
-        let rate = between(before.sample.rate.rad_per_s(), after.sample.rate.rad_per_s());
-        let force = between(before.sample.force.m_per_s2(), after.sample.force.m_per_s2());
+        let rate = between(
+            before.sample.rate.rad_per_s(),
+            after.sample.rate.rad_per_s(),
+        );
+        let force = between(
+            before.sample.force.m_per_s2(),
+            after.sample.force.m_per_s2(),
+        );
         let field = between(before.field.microtesla(), after.field.microtesla());
         counted(&NineAxes {
             sample: Sample {
@@ -96,7 +105,9 @@ fn largest_differences(recording: &Recording, axes: Axes) -> [f64; 2] {
         let field_as_read = MagneticField::from_microtesla(microtesla);
         reference.update(&RANGES.sample(raw), nine.then_some(field_as_read));
         fixed.update(raw, nine.then(|| Field::from_parts_of_microtesla(*field)));
-        let [w, x, y, z] = fixed.bits().map(|bits| f64::from(bits) / f64::from(1 << 30));
+        let [w, x, y, z] = fixed
+            .bits()
+            .map(|bits| f64::from(bits) / f64::from(1 << 30));
         let found = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
         let apart = (reference.orientation().inverse() * found).imag().norm();
         let degrees = 2.0 * apart.min(1.0).asin().to_degrees();
@@ -116,7 +127,10 @@ fn follows(axes: Axes, of: fn(&Trial) -> Recording, most: [f64; 2]) -> Outcome {
     for trial in &trials {
         let recording = of(trial);
         let [start, after] = largest_differences(&recording, axes);
-        let line = format!("{axes:?} {}: {start:.6}° at the start, {after:.6}° after", recording.name);
+        let line = format!(
+            "{axes:?} {}: {start:.6}° at the start, {after:.6}° after",
+            recording.name
+        );
         println!("{line}");
         if !(start <= most[0] && after <= most[1]) {
             missed.push(line);
@@ -132,11 +146,23 @@ fn main() -> ExitCode {
     let mut arguments = Arguments::from_args();
     // What is missing is told by the tests themselves.
     arguments.include_ignored = false;
-    let test = |name: &str, axes, of: fn(&Trial) -> Recording, most| Test::ignorable_test(name, move || follows(axes, of, most));
+    let test = |name: &str, axes, of: fn(&Trial) -> Recording, most| {
+        Test::ignorable_test(name, move || follows(axes, of, most))
+    };
     let tests = vec![
-        test("six_axes_as_recorded", Axes::Six, as_recorded, [0.002, 0.002]),
+        test(
+            "six_axes_as_recorded",
+            Axes::Six,
+            as_recorded,
+            [0.002, 0.002],
+        ),
         test("six_axes_at_1_khz", Axes::Six, at_1_khz, [0.002, 0.002]),
-        test("nine_axes_as_recorded", Axes::Nine, as_recorded, [0.01, 0.004]),
+        test(
+            "nine_axes_as_recorded",
+            Axes::Nine,
+            as_recorded,
+            [0.01, 0.004],
+        ),
         test("nine_axes_at_1_khz", Axes::Nine, at_1_khz, [0.01, 0.004]),
     ];
     libtest_mimic::run(&arguments, tests).exit_code()

@@ -161,7 +161,7 @@ impl<M: Multiply> Complementary<M> {
         let h_squared = h.norm_squared();
         let excess = tangent_excess(h_squared);
         let q_omega = self.orientation.turned_in_body(h.grown(excess));
-        let force = q_omega.in_world(
+        let force = q_omega.in_world_times_square(
             Vector::from_counts(accel),
             tangent_squared(h_squared, excess),
         );
@@ -227,9 +227,7 @@ impl<M: Multiply> Complementary<M> {
     /// Takes the tilt this force (counts, body frame) shows at once and keeps yaw. One without direction changes
     /// nothing.
     pub fn level(&mut self, accel: [i16; 3]) {
-        let force = self
-            .orientation
-            .in_world(Vector::from_counts(accel), Q::ZERO);
+        let force = self.orientation.in_world(Vector::from_counts(accel));
         self.orientation = levelled(self.orientation, force, Share::WHOLE);
     }
 }

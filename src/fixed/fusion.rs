@@ -154,7 +154,7 @@ impl<M: Multiply> Fusion<M> {
     #[inline(never)]
     fn update_heading(&mut self, field: Field) {
         let orientation = self.inclination.orientation();
-        let field = orientation.in_world(field.vector(), Q::ZERO);
+        let field = orientation.in_world(field.vector());
         let Some(error) = self.heading.update(field, self.rate) else {
             return;
         };

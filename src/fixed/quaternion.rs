@@ -63,6 +63,19 @@ impl<M: Multiply> Quaternion<M> {
         }
     }
 
+    /// q (1 + c, s): a turn in the body's own axes by twice the angle of which s is the sine and 1 + c the cosine.
+    #[inline(always)]
+    pub fn rotated_in_body(self, c: Q<M, 32>, s: Vector<M, 32>) -> Self {
+        let [w, x, y, z] = self.upper();
+        let turned = self.turned_in_body(s);
+        Self {
+            w: turned.w.plus(w, c),
+            x: turned.x.plus(x, c),
+            y: turned.y.plus(y, c),
+            z: turned.z.plus(z, c),
+        }
+    }
+
     /// (1, −t_z, 0, t_x) q: a turn about a horizontal axis of the world, √(1 + t²) times as long.
     #[inline(always)]
     pub fn levelled_a_little(self, t_x: Q<M, 32>, t_z: Q<M, 32>) -> Self {
@@ -95,13 +108,23 @@ impl<M: Multiply> Quaternion<M> {
         }
     }
 
-    /// q a q⁻¹ |q|²: a vector of the body as seen from the world. 15 fraction bits in, and
-    /// |q|² − 1; 12 out.
-    ///
-    /// |q|² a + 2 v × (v × a + w a) with the vector part v: what is in the brackets is no longer than a,
-    /// and the 2 is in the formats.
+    /// q a q⁻¹: a vector of the body as seen from the world. 15 fraction bits in, 12 out.
     #[inline(always)]
-    pub fn in_world(self, a: Vector<M, 15>, excess: Q<M, 32>) -> Vector<M, 12> {
+    pub fn in_world(self, a: Vector<M, 15>) -> Vector<M, 12> {
+        self.with_what_turns(a, a.coarser())
+    }
+
+    /// q a q⁻¹ |q|², of a quaternion of which |q|² − 1 is known.
+    #[inline(always)]
+    pub fn in_world_times_square(self, a: Vector<M, 15>, excess: Q<M, 32>) -> Vector<M, 12> {
+        self.with_what_turns(a, a.coarser().grown(excess))
+    }
+
+    ///
+    /// |q|² a + 2 v × (v × a + w a) with the vector part v and the first of these given: what is in the brackets
+    /// is no longer than a, and the 2 is in the formats.
+    #[inline(always)]
+    fn with_what_turns(self, a: Vector<M, 15>, outer: Vector<M, 12>) -> Vector<M, 12> {
         let [w, x, y, z] = self.upper();
         let inner: Vector<M, 15> = Vector::<M, 13>::new(
             Q::product(w, a.x).plus(y, a.z).minus(z, a.y),
@@ -109,7 +132,6 @@ impl<M: Multiply> Quaternion<M> {
             Q::product(w, a.z).plus(x, a.y).minus(y, a.x),
         )
         .finer();
-        let outer = a.coarser::<12>().grown(excess);
         // A product has 13 fraction bits; read with 12 it is twice as large.
         let twice = |q: Q<M, 30>| q.read_as::<29>();
         Vector {

@@ -2,7 +2,7 @@
 
 use super::super::division::per;
 use super::super::gyro::{Nanoseconds, Remainders, half_angle_per_count};
-use super::super::half_angle::{tangent_excess, tangent_squared};
+use super::super::half_angle::{cosine_excess, sine_excess};
 use super::super::inclination::{Share, levelled};
 use super::super::multiply::Multiply;
 use super::super::number::{Q, Wide};
@@ -107,8 +107,8 @@ impl<M: Multiply> Inclination<M> {
 
     /// One sample, body frame, counts, bias removed.
     ///
-    /// 1. q ← q (1, t), t = tan|ωΔt/2| ω/|ω|, which is exp(ωΔt/2) but for its length;
-    /// 2. a ← q f q⁻¹, and its error b of x and z;
+    /// 1. q ← q exp(ωΔt/2);
+    /// 2. a ← q f q⁻¹, and its error e of x and z;
     /// 3. b ← b + k_l(e − b), and of that c = k_c b; in the first second c = e/n instead, and b is 0;
     /// 4. q ← (1, c/2) q, of unit length.
     #[inline(always)]
@@ -122,9 +122,11 @@ impl<M: Multiply> Inclination<M> {
         } = self.coefficients;
         let h: Vector<M, 32> = self.remainders.half_angle(rate, half_angle_per_count);
         let h_squared = h.norm_squared();
-        let excess = tangent_excess(h_squared);
-        let q_omega = self.orientation.turned_in_body(h.grown(excess));
-        let Vector { x, z, .. } = q_omega.in_world(force, tangent_squared(h_squared, excess));
+        let sine = h.grown(sine_excess(h_squared));
+        let q_omega = self
+            .orientation
+            .rotated_in_body(cosine_excess(h_squared), sine);
+        let Vector { x, z, .. } = q_omega.in_world(force);
         let (c_x, c_z) = if self.age < start {
             self.starting(x, z)
         } else {
@@ -175,7 +177,7 @@ impl<M: Multiply> Inclination<M> {
 
     /// Takes the tilt this force (counts, body frame) shows at once, keeps the heading, and forgets the error.
     pub fn level(&mut self, force: Vector<M, 15>) {
-        let seen = self.orientation.in_world(force, Q::ZERO);
+        let seen = self.orientation.in_world(force);
         self.orientation = levelled(self.orientation, seen, Share::WHOLE);
         self.error = [Wide::from_bits(0); 2];
         self.age = 0;
