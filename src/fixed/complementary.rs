@@ -3,24 +3,20 @@
 //! What it computes is [`orientation::complementary`](crate::orientation::complementary), which is the one to read
 //! first; here every step is put the way that costs least.
 
+use super::gyro::{Remainders, half_angle_per_count};
 use super::half_angle::{length_squared, tangent_excess};
-use super::inclination::{NearLevel, Share, anywhere};
+use super::inclination::{NearLevel, Share, levelled};
 use super::multiply::{Multiply, Portable};
-use super::number::{Q, Wide};
+use super::number::Q;
 use super::quaternion::Quaternion;
 use super::vector::Vector;
 use crate::calibration::GyroBias;
 use crate::orientation::TimeConstant;
 use crate::sensor::{GyroRange, RawSample};
-use crate::units::{RADIANS_PER_DEGREE, Seconds};
+use crate::units::Seconds;
 use nalgebra::UnitQuaternion;
 
-/// The time from one sample to the next in nanoseconds.
-///
-/// Single precision would keep seven digits of it, and a gyro that turned by 6000° would be off by a
-/// thousandth of a degree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Nanoseconds(pub u32);
+pub use super::gyro::Nanoseconds;
 
 /// What a person chooses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,44 +65,21 @@ struct Derived<M> {
 }
 
 impl<M: Multiply> Derived<M> {
-    /// A sixteenth less than what fits, for what a tangent is longer than its angle.
-    const LONGEST: u64 = 15 << 27;
-
     fn new(parameters: &Parameters) -> Self {
         let Parameters {
             gyro,
-            sample_period: Nanoseconds(nanoseconds),
+            sample_period,
             time_constant,
         } = *parameters;
-        let per_nanosecond = half_angle_per_nanosecond(gyro);
-        let half_angle = (per_nanosecond * u64::from(nanoseconds) + (1 << 22)) >> 23;
-        let share = Share::from_accelerometer_weight(
-            time_constant.accelerometer_weight(Seconds(nanoseconds as f32 * 1e-9)),
-        );
+        let seconds = Seconds(sample_period.0 as f32 * 1e-9);
+        let share = Share::from_accelerometer_weight(time_constant.accelerometer_weight(seconds));
         Self {
-            half_angle_per_count: Q::from_bits(half_angle.min(Self::LONGEST) as i32),
+            half_angle_per_count: half_angle_per_count(gyro, sample_period),
             near_level: NearLevel::new(share),
             share,
         }
     }
 }
-
-/// Half a radian per second and count, as Q72 per nanosecond: ½ max_range / 2¹⁵ 10⁻⁹ 2⁷².
-const fn half_angle_per_nanosecond(gyro: GyroRange) -> u64 {
-    const PER_DPS: f64 = 0.5 * RADIANS_PER_DEGREE * 1e-9 * (1_u64 << 57) as f64;
-    const fn of(dps: f64) -> u64 {
-        (dps * PER_DPS + 0.5) as u64
-    }
-    match gyro {
-        GyroRange::Dps250 => const { of(GyroRange::Dps250.max_dps()) },
-        GyroRange::Dps500 => const { of(GyroRange::Dps500.max_dps()) },
-        GyroRange::Dps1000 => const { of(GyroRange::Dps1000.max_dps()) },
-        GyroRange::Dps2000 => const { of(GyroRange::Dps2000.max_dps()) },
-    }
-}
-
-/// Half of the last bit kept.
-const ROUNDING: u32 = 1 << 31;
 
 /// The complementary filter on quaternions, eq. 24, in integers.
 ///
@@ -133,8 +106,7 @@ const ROUNDING: u32 = 1 << 31;
 pub struct Complementary<M = Portable> {
     derived: Derived<M>,
     bias: Bias,
-    /// What the half angles of the samples so far have left below the last bit of theirs, as Q64.
-    remainders: [u32; 3],
+    remainders: Remainders,
     orientation: Quaternion<M>,
 }
 
@@ -151,7 +123,7 @@ impl<M: Multiply> Complementary<M> {
         Self {
             derived: Derived::new(parameters),
             bias: Bias::ZERO,
-            remainders: [ROUNDING; 3],
+            remainders: Remainders::START,
             orientation: Quaternion::IDENTITY,
         }
     }
@@ -174,7 +146,7 @@ impl<M: Multiply> Complementary<M> {
     pub fn update(&mut self, sample: &RawSample) {
         let (tangent, h_squared) = self.half_angle(sample.gyro);
         let q_omega = self.orientation.turned_in_body(tangent);
-        let force = q_omega.in_world(sample.accel, length_squared(h_squared));
+        let force = q_omega.in_world_times_square(sample.accel, length_squared(h_squared));
         let Some((x, z)) = self.derived.near_level.little(force) else {
             self.orientation = q_omega;
             return self.level_anywhere(force.x, force.y, force.z);
@@ -192,22 +164,7 @@ impl<M: Multiply> Complementary<M> {
     #[cold]
     #[inline(never)]
     fn level_anywhere(&mut self, x: Q<M, 11>, y: Q<M, 11>, z: Q<M, 11>) {
-        self.level_by(self.derived.share, Vector::new(x, y, z));
-    }
-
-    /// By a share of any tilt.
-    #[inline]
-    fn level_by(&mut self, share: Share, force: Vector<M, 11>) {
-        let q = self.orientation;
-        self.orientation = match (anywhere(force), share) {
-            (None, _) => q,
-            (Some(tilt), Share::Little(share)) => {
-                let (x, z) = tilt.little(Q::from_bits(share));
-                q.levelled_a_little(x, z)
-            }
-            (Some(tilt), Share::Much(share)) => q.levelled(tilt.much(share)),
-        };
-        self.normalise();
+        self.orientation = levelled(self.orientation, Vector::new(x, y, z), self.derived.share);
     }
 
     /// To unit length, also after a turn by many degrees.
@@ -229,14 +186,7 @@ impl<M: Multiply> Complementary<M> {
         let h: Vector<M, 32> = rate.times(per_count);
         let h_squared = h.norm_squared();
         let tangent_per_count = per_count.plus(per_count, tangent_excess(h_squared));
-        let [rest_x, rest_y, rest_z] = &mut self.remainders;
-        let of = |rate: Q<M, 15>, rest: &mut u32| {
-            let rest_and = Wide::<M, 64>::from_bits(i64::from(*rest));
-            let tangent = rest_and.plus(rate, tangent_per_count);
-            *rest = tangent.lower();
-            tangent.upper()
-        };
-        let tangent = Vector::new(of(rate.x, rest_x), of(rate.y, rest_y), of(rate.z, rest_z));
+        let tangent = self.remainders.half_angle(rate, tangent_per_count);
         (tangent, h_squared)
     }
 
@@ -270,7 +220,9 @@ impl<M: Multiply> Complementary<M> {
     /// Takes the tilt this force (counts, body frame) shows at once and keeps yaw. One without direction changes
     /// nothing.
     pub fn level(&mut self, accel: [i16; 3]) {
-        let force = self.orientation.in_world(accel, const { Q::constant(1.0) });
-        self.level_by(Share::WHOLE, force);
+        let force = self
+            .orientation
+            .in_world_times_square(accel, const { Q::constant(1.0) });
+        self.orientation = levelled(self.orientation, force, Share::WHOLE);
     }
 }

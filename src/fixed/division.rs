@@ -41,3 +41,36 @@ pub fn reciprocal_root<M: Multiply>(y: Q<M, 31>) -> Q<M, 29> {
     }
     root
 }
+
+/// (1 + e)^−½ − 1 = −e/2 + 3e²/8 − 5e³/16 + …; leaves 35e⁴/128, 1e-9 for e = 1/128.
+#[inline(always)]
+pub fn shortening<M: Multiply>(e: Q<M, 33>) -> Q<M, 32> {
+    let inner = const { Q::<M, 30>::constant(3.0 / 8.0) }
+        .minus(e, const { Q::<M, 29>::constant(5.0 / 16.0) });
+    let series = const { Q::<M, 31>::constant(-0.5) }.plus(e, inner);
+    Q::product(e, series)
+}
+
+/// (1 + e)^−½ for 1 + e from ¼ to below 4, good to 2e-8; none for any other.
+#[inline]
+pub fn reciprocal_length<M: Multiply>(e: Q<M, 28>) -> Option<Q<M, 29>> {
+    const ONE: i32 = 1 << 28;
+    let square = e.bits().checked_add(ONE)?;
+    match square {
+        // A quarter of it as Q31, and half of its root's reciprocal.
+        ONE..0x4000_0000 => {
+            let twice = reciprocal_root(Q::<M, 31>::from_bits(square << 1));
+            Some(Q::from_bits(twice.bits() >> 1))
+        }
+        0x400_0000..ONE => Some(reciprocal_root(Q::from_bits(square << 3))),
+        _ => None,
+    }
+}
+
+/// 1/n; just below 1 for n = 1 and, of 32 fraction bits, just below ½ for n = 2 or less.
+#[inline(always)]
+pub fn per<M: Multiply, const BITS: u32>(n: NonZeroU32) -> Q<M, BITS> {
+    const { assert!(BITS == 31 || BITS == 32) }
+    let quotient = (u32::MAX >> (32 - BITS)) / n;
+    Q::from_bits(quotient.min(i32::MAX as u32) as i32)
+}

@@ -8,7 +8,7 @@ use super::division::{reciprocal, reciprocal_from_below, reciprocal_root};
 use super::half_angle::tangent_excess;
 use super::multiply::Multiply;
 use super::number::Q;
-use super::quaternion::Levelling;
+use super::quaternion::{Levelling, Quaternion};
 use super::vector::Vector;
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -108,7 +108,7 @@ pub struct Tilt<M> {
 /// Any tilt; none if the force is zero, which has no direction. One that points straight down
 /// is turned up about x, as the notes leave open.
 #[inline]
-pub fn anywhere<M: Multiply>(force: Vector<M, 11>) -> Option<Tilt<M>> {
+pub fn anywhere<M: Multiply, const BITS: u32>(force: Vector<M, BITS>) -> Option<Tilt<M>> {
     let Vector { x, y: up, z } = force;
     let largest = x.bits().unsigned_abs() | up.bits().unsigned_abs() | z.bits().unsigned_abs();
     if largest == 0 {
@@ -116,7 +116,7 @@ pub fn anywhere<M: Multiply>(force: Vector<M, 11>) -> Option<Tilt<M>> {
     }
     // The largest becomes ½ to 1.
     let shift = largest.leading_zeros().saturating_sub(2);
-    let scaled = |q: Q<M, 11>| Q::<M, 30>::from_bits(q.bits() << shift);
+    let scaled = |q: Q<M, BITS>| Q::<M, 30>::from_bits(q.bits() << shift);
     let (x, up, z) = (scaled(x), scaled(up), scaled(z));
     let Some((x, z, horizontal)) = horizontal(x, z) else {
         let straight_down = Tilt {
@@ -161,9 +161,27 @@ impl<M: Multiply> Tilt<M> {
     }
 }
 
-/// (x, z) / √(x² + z²), and the root; none if both are zero.
+/// The orientation levelled by a share of any tilt, which the force in the world shows, and normalised.
 #[inline]
-fn horizontal<M: Multiply>(x: Q<M, 30>, z: Q<M, 30>) -> Option<(Q<M, 30>, Q<M, 30>, Q<M, 30>)> {
+pub fn levelled<M: Multiply, const BITS: u32>(
+    q: Quaternion<M>,
+    force: Vector<M, BITS>,
+    share: Share,
+) -> Quaternion<M> {
+    let levelled = match (anywhere(force), share) {
+        (None, _) => q,
+        (Some(tilt), Share::Little(share)) => {
+            let (x, z) = tilt.little(Q::from_bits(share));
+            q.levelled_a_little(x, z)
+        }
+        (Some(tilt), Share::Much(share)) => q.levelled(tilt.much(share)),
+    };
+    levelled.normalised()
+}
+
+/// (x, z) / √(x² + z²), and the root, for x and z up to ½; none if both are zero.
+#[inline]
+pub fn horizontal<M: Multiply>(x: Q<M, 30>, z: Q<M, 30>) -> Option<(Q<M, 30>, Q<M, 30>, Q<M, 30>)> {
     let largest = x.bits().unsigned_abs() | z.bits().unsigned_abs();
     if largest == 0 {
         return None;

@@ -1,7 +1,8 @@
 //! Three numbers of one format.
 
 use super::multiply::Multiply;
-use super::number::Q;
+use super::number::{Q, Wide};
+use core::ops::{Add, Sub};
 
 /// A vector; its frame is what the name that holds it says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +30,41 @@ impl<M: Multiply, const BITS: u32> Vector<M, BITS> {
         let [x, y, z] = counts;
         let q = |count: i16| Q::from_bits(i32::from(count) << BITS);
         Self::new(q(x), q(y), q(z))
+    }
+
+    /// From the integers that stand for x, y and z.
+    #[inline(always)]
+    pub fn from_bits([x, y, z]: [i32; 3]) -> Self {
+        Self::new(Q::from_bits(x), Q::from_bits(y), Q::from_bits(z))
+    }
+
+    /// x, y and z.
+    #[inline(always)]
+    pub fn parts(self) -> [Q<M, BITS>; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    /// Zero.
+    pub const ZERO: Self = Self {
+        x: Q::ZERO,
+        y: Q::ZERO,
+        z: Q::ZERO,
+    };
+
+    /// The sum of the squares, exactly, with the fraction bits of both factors.
+    #[inline(always)]
+    pub fn squared(self) -> u64 {
+        // Three squares of 62 bits are more than a signed sum holds, and less than an unsigned one.
+        let sum = M::add_wide(0, self.x.bits(), self.x.bits());
+        let sum = M::add_wide(sum, self.y.bits(), self.y.bits());
+        M::add_wide(sum, self.z.bits(), self.z.bits()) as u64
+    }
+
+    /// Whether no part is beyond −`limit` and `limit`.
+    #[inline(always)]
+    pub fn is_within(self, limit: Q<M, BITS>) -> bool {
+        let within = |part: Q<M, BITS>| part.bits().unsigned_abs() <= limit.bits().unsigned_abs();
+        within(self.x) && within(self.y) && within(self.z)
     }
 
     /// The sum of the squares.
@@ -69,6 +105,106 @@ impl<M: Multiply, const BITS: u32> Vector<M, BITS> {
             x: self.x.finer(),
             y: self.y.finer(),
             z: self.z.finer(),
+        }
+    }
+
+    /// The same in a coarser format, rounded down.
+    #[inline(always)]
+    pub fn coarser<const COARSER: u32>(self) -> Vector<M, COARSER> {
+        Vector {
+            x: self.x.coarser(),
+            y: self.y.coarser(),
+            z: self.z.coarser(),
+        }
+    }
+
+    /// The same bits, read with other fraction bits.
+    #[inline(always)]
+    pub fn read_as<const OTHER: u32>(self) -> Vector<M, OTHER> {
+        Vector {
+            x: self.x.read_as(),
+            y: self.y.read_as(),
+            z: self.z.read_as(),
+        }
+    }
+}
+
+impl<M: Multiply, const BITS: u32> Add for Vector<M, BITS> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
+    }
+}
+
+impl<M: Multiply, const BITS: u32> Sub for Vector<M, BITS> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+}
+
+/// The same with 64 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WideVector<M, const BITS: u32> {
+    /// Along x.
+    pub x: Wide<M, BITS>,
+    /// Along y.
+    pub y: Wide<M, BITS>,
+    /// Along z.
+    pub z: Wide<M, BITS>,
+}
+
+impl<M: Multiply, const BITS: u32> WideVector<M, BITS> {
+    /// Zero.
+    pub const ZERO: Self = Self {
+        x: Wide::from_bits(0),
+        y: Wide::from_bits(0),
+        z: Wide::from_bits(0),
+    };
+
+    /// From the upper halves, the lower being zero.
+    #[inline(always)]
+    pub fn from_upper<const UPPER: u32>(upper: Vector<M, UPPER>) -> Self {
+        Self {
+            x: Wide::from_upper(upper.x),
+            y: Wide::from_upper(upper.y),
+            z: Wide::from_upper(upper.z),
+        }
+    }
+
+    /// The upper halves, rounded down.
+    #[inline(always)]
+    pub fn upper<const UPPER: u32>(self) -> Vector<M, UPPER> {
+        Vector::new(self.x.upper(), self.y.upper(), self.z.upper())
+    }
+
+    /// The upper halves, rounded to nearest.
+    #[inline(always)]
+    pub fn nearest<const UPPER: u32>(self) -> Vector<M, UPPER> {
+        Vector::new(self.x.nearest(), self.y.nearest(), self.z.nearest())
+    }
+
+    /// By this share of the way to `target`.
+    #[inline(always)]
+    pub fn towards<const UPPER: u32>(self, target: Vector<M, UPPER>, share: Q<M, 32>) -> Self {
+        Self {
+            x: self.x.towards(target.x, share),
+            y: self.y.towards(target.y, share),
+            z: self.z.towards(target.z, share),
+        }
+    }
+
+    /// This and a b.
+    #[inline(always)]
+    pub fn plus<const A: u32, const B: u32>(self, a: Q<M, A>, b: Vector<M, B>) -> Self {
+        Self {
+            x: self.x.plus(a, b.x),
+            y: self.y.plus(a, b.y),
+            z: self.z.plus(a, b.z),
         }
     }
 }

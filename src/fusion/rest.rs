@@ -24,20 +24,21 @@ pub enum Motion {
 #[derive(Clone, Copy, Debug)]
 pub struct Rest<T: RealField> {
     coefficients: Coefficients<T>,
-    /// Sums of the block that is under way, and how many samples are in it.
+    /// Sums of the block that is under way.
     block: (Vector3<T>, Vector3<T>),
-    samples: u32,
     /// Low-passed rate, rad/s, and force, m/s²; none before the first block.
     mean: Option<(Vector3<T>, Vector3<T>)>,
     /// Blocks in a row close to the mean.
     calm: u32,
     /// The low-passed force when they began, m/s².
     anchor: Vector3<T>,
-    /// Sum of the rates of those blocks, without the first third, and how many: what came before has
-    /// died away by then.
+    /// Sum of the rates of those blocks until the rest begins, without the first third, and how many:
+    /// what came before has died away by then.
     settled: (Vector3<T>, u32),
     /// Rate of the last block, rad/s.
     rate: Vector3<T>,
+    /// Whether it belongs to a rest.
+    still: bool,
     motion: Motion,
 }
 
@@ -60,9 +61,9 @@ struct Coefficients<T> {
 }
 
 /// Calm for so many times as long as a rest takes outdoes a bias known before.
-const LONG: u32 = 4;
-/// Most the low-passed force may wander while nothing moves, m/s², squared: a turn of 1°.
-const WANDER: f64 = 0.17 * 0.17;
+pub const LONG: u32 = 4;
+/// Most the low-passed force may wander while nothing moves, m/s²: a turn of 1°.
+pub const WANDER: f64 = 0.17;
 
 impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
@@ -87,12 +88,12 @@ impl<T: RealField + Copy> Rest<T> {
         Self {
             coefficients: Coefficients::new(parameters, period),
             block: (Vector3::zeros(), Vector3::zeros()),
-            samples: 0,
             mean: None,
             calm: 0,
             anchor: Vector3::zeros(),
             settled: (Vector3::zeros(), 0),
             rate: Vector3::zeros(),
+            still: false,
             motion: Motion::Moving { samples: 0 },
         }
     }
@@ -101,26 +102,23 @@ impl<T: RealField + Copy> Rest<T> {
         self.coefficients = Coefficients::new(parameters, period);
     }
 
-    /// One sample, rad/s with its bias and m/s², body frame. True if a block has ended with it, and
-    /// [`Self::motion`] has been judged anew.
-    pub fn update(
-        &mut self,
-        rate: Vector3<T>,
-        force: Vector3<T>,
-        known: Option<AngularRate<T>>,
-    ) -> bool {
+    /// One sample, rad/s with its bias and m/s², body frame.
+    pub fn add(&mut self, rate: Vector3<T>, force: Vector3<T>) {
         self.block = (self.block.0 + rate, self.block.1 + force);
-        self.samples += 1;
-        if self.samples < DECIMATION {
-            return false;
-        }
+    }
+
+    /// A block of [`DECIMATION`] samples has ended. `known` is the bias as measured in the last rest.
+    pub fn look(&mut self, known: Option<AngularRate<T>>) {
         let share = share::<T>(DECIMATION);
         let (rate, force) = (self.block.0 * share, self.block.1 * share);
         self.block = (Vector3::zeros(), Vector3::zeros());
-        self.samples = 0;
-        let still = self.is_still(rate, force, known);
+        self.still = self.is_still(rate, force, known);
+    }
+
+    /// What to make of it.
+    pub fn judge(&mut self) -> Motion {
         let more = |samples: u32| samples.saturating_add(DECIMATION);
-        self.motion = match (still, self.motion) {
+        self.motion = match (self.still, self.motion) {
             (true, Motion::Still { samples }) => Motion::Still {
                 samples: more(samples),
             },
@@ -134,7 +132,7 @@ impl<T: RealField + Copy> Rest<T> {
                 samples: DECIMATION,
             },
         };
-        true
+        self.motion
     }
 
     /// A steady slow turn about the vertical looks like a bias to a gyro and an accelerometer; about
@@ -168,12 +166,13 @@ impl<T: RealField + Copy> Rest<T> {
         }
         let close = (rate - mean_rate).norm_squared() < rate_limit
             && (force - mean_force).norm_squared() < force_limit
-            && (mean_force - self.anchor).norm_squared() < convert(WANDER)
+            && (mean_force - self.anchor).norm_squared() < convert(WANDER * WANDER)
             && (is_known || plausible);
         self.rate = rate;
         if close {
             self.calm = self.calm.saturating_add(1);
-            if self.calm > calm / 3 {
+            let ripe = self.calm > calm / 3;
+            if ripe && matches!(self.motion, Motion::Moving { .. }) {
                 self.settled = (self.settled.0 + rate, self.settled.1.saturating_add(1));
             }
         } else {
@@ -212,11 +211,11 @@ impl<T: RealField + Copy> Rest<T> {
         self.motion
     }
 
-    /// Forgets what it saw, but not since when the board moves.
+    /// Forgets what it saw, but not since when the board moves. A rest is over.
     pub fn restart(&mut self) {
         self.block = (Vector3::zeros(), Vector3::zeros());
-        self.samples = 0;
         self.mean = None;
+        self.still = false;
         self.forget();
     }
 }

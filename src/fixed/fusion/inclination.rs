@@ -1,0 +1,200 @@
+//! Tilt without drift from gyro and accelerometer; the heading is the gyro's.
+
+use super::super::division::per;
+use super::super::gyro::{Nanoseconds, Remainders, half_angle_per_count};
+use super::super::half_angle::{cosine_excess, sine_excess};
+use super::super::inclination::{Share, levelled};
+use super::super::multiply::Multiply;
+use super::super::number::{Q, Wide};
+use super::super::quaternion::Quaternion;
+use super::super::vector::Vector;
+use super::parameters::{Rates, samples, seconds, weight};
+use crate::fusion::Parameters;
+use crate::fusion::parameters::{tilt_correction, tilt_low_pass_weight};
+use core::num::NonZeroU32;
+
+/// The complementary filter of second order.
+#[derive(Clone, Copy, Debug)]
+pub struct Inclination<M> {
+    coefficients: Coefficients<M>,
+    remainders: Remainders,
+    orientation: Quaternion<M>,
+    /// b, in counts of the accelerometer, as x and z of the force in the world: b = (−z, x).
+    error: [Wide<M, 44>; 2],
+    /// Samples since the start.
+    age: u32,
+}
+
+/// What follows from the parameters and the sample period.
+#[derive(Clone, Copy, Debug)]
+struct Coefficients<M> {
+    half_angle_per_count: Q<M, 49>,
+    /// k_l: the low-pass of the error.
+    low_pass: Q<M, 32>,
+    /// ½ k_c per count: half of the share of it that is corrected in a sample.
+    correction: Scaled<M>,
+    /// 1 g has as many counts as 2 to this.
+    bits_per_g: u32,
+    start: u32,
+}
+
+/// A number as Q52 after a shift to the left.
+#[derive(Clone, Copy, Debug)]
+struct Scaled<M> {
+    bits: Q<M, 52>,
+    shift: u32,
+}
+
+impl<M: Multiply> Scaled<M> {
+    fn new(value: f32) -> Self {
+        let (mut value, mut shift) = (value, 0);
+        while value >= (1.0 / (1 << 21) as f32) && shift < 12 {
+            value *= 0.5;
+            shift += 1;
+        }
+        Self {
+            bits: Q::nearest(value),
+            shift,
+        }
+    }
+
+    #[inline(always)]
+    fn times(self, counts: Q<M, 12>) -> Q<M, 32> {
+        let product: Q<M, 32> = Q::product(counts, self.bits);
+        Q::from_bits(product.bits() << self.shift)
+    }
+}
+
+/// Most that is corrected in a sample of a force of 16 g on each axis, as a half angle, rad.
+const LARGEST_CORRECTION: f32 = 0.49;
+
+impl<M: Multiply> Coefficients<M> {
+    fn new(parameters: &Parameters<f32>, rates: &Rates) -> Self {
+        let period = seconds(rates.sample);
+        let per_count = 0.5 * tilt_correction(parameters, period) / rates.counts_per_g();
+        // √3 · 2¹⁵ counts.
+        let most = LARGEST_CORRECTION / 56_756.0;
+        Self {
+            half_angle_per_count: half_angle_per_count(rates.ranges.gyro, rates.sample),
+            low_pass: weight(tilt_low_pass_weight(parameters, period)),
+            correction: Scaled::new(per_count.min(most)),
+            bits_per_g: (rates.counts_per_g() as u32).ilog2(),
+            start: samples(parameters.start_time, rates.sample),
+        }
+    }
+}
+
+impl<M: Multiply> Inclination<M> {
+    pub fn new(parameters: &Parameters<f32>, rates: &Rates) -> Self {
+        Self {
+            coefficients: Coefficients::new(parameters, rates),
+            remainders: Remainders::START,
+            orientation: Quaternion::IDENTITY,
+            error: [Wide::from_bits(0); 2],
+            age: 0,
+        }
+    }
+
+    pub fn tune(&mut self, parameters: &Parameters<f32>, rates: &Rates) {
+        self.coefficients = Coefficients::new(parameters, rates);
+    }
+
+    pub fn set_sample_period(&mut self, rates: &Rates) {
+        let Nanoseconds(_) = rates.sample;
+        self.coefficients.half_angle_per_count =
+            half_angle_per_count(rates.ranges.gyro, rates.sample);
+    }
+
+    /// One sample, body frame, counts, bias removed.
+    ///
+    /// 1. q ← q exp(ωΔt/2);
+    /// 2. a ← q f q⁻¹, and its error e of x and z;
+    /// 3. b ← b + k_l(e − b), and of that c = k_c b; in the first second c = e/n instead, and b is 0;
+    /// 4. q ← (1, c/2) q, of unit length.
+    #[inline(always)]
+    pub fn update(&mut self, rate: Vector<M, 15>, force: Vector<M, 15>) {
+        let Coefficients {
+            half_angle_per_count,
+            low_pass,
+            correction,
+            start,
+            ..
+        } = self.coefficients;
+        let h: Vector<M, 32> = self.remainders.half_angle(rate, half_angle_per_count);
+        let h_squared = h.norm_squared();
+        let sine = h.grown(sine_excess(h_squared));
+        let q_omega = self
+            .orientation
+            .rotated_in_body(cosine_excess(h_squared), sine);
+        let Vector { x, z, .. } = q_omega.in_world(force);
+        let (c_x, c_z) = if self.age < start {
+            self.starting(x, z)
+        } else {
+            let [b_x, b_z] = self.error;
+            let (b_x, b_z) = (b_x.towards(x, low_pass), b_z.towards(z, low_pass));
+            self.error = [b_x, b_z];
+            (correction.times(b_x.upper()), correction.times(b_z.upper()))
+        };
+        let tilted = q_omega.levelled_a_little(c_x, c_z);
+        self.orientation = match tilted.normalised_nearby() {
+            Some(orientation) => orientation,
+            None => normalised_anywhere(tilted),
+        };
+    }
+
+    /// ½ e/n.
+    #[inline(always)]
+    fn starting(&mut self, x: Q<M, 12>, z: Q<M, 12>) -> (Q<M, 32>, Q<M, 32>) {
+        self.age += 1;
+        let share: Q<M, 31> = per(NonZeroU32::new(self.age).unwrap_or(NonZeroU32::MIN));
+        let bits = self.coefficients.bits_per_g;
+        // A knock in the first samples must not turn the picture over. 1 g itself would be too large by a bit.
+        let one_g = Q::<M, 12>::from_bits((1 << (bits + 12)) - 1);
+        let half = |part: Q<M, 12>| {
+            let in_g = Q::<M, 30>::from_bits(part.limited(one_g).bits() << (18 - bits));
+            Q::<M, 29>::product(in_g, share).read_as::<30>().finer()
+        };
+        (half(x), half(z))
+    }
+
+    /// Body to world.
+    #[inline(always)]
+    pub fn orientation(&self) -> Quaternion<M> {
+        self.orientation
+    }
+
+    /// b, counts, as x and z of the force in the world: how far from level the last seconds were.
+    #[inline(always)]
+    pub fn error(&self) -> [Q<M, 12>; 2] {
+        self.error.map(Wide::upper)
+    }
+
+    /// Whether the start is over, so that an error is the gyro's and not the start's.
+    #[inline(always)]
+    pub fn is_settled(&self) -> bool {
+        self.age >= self.coefficients.start
+    }
+
+    /// Takes the tilt this force (counts, body frame) shows at once, keeps the heading, and forgets the error.
+    pub fn level(&mut self, force: Vector<M, 15>) {
+        let seen = self.orientation.in_world(force);
+        self.orientation = levelled(self.orientation, seen, Share::WHOLE);
+        self.error = [Wide::from_bits(0); 2];
+        self.age = 0;
+    }
+
+    /// Goes on from here.
+    pub fn set(&mut self, orientation: Quaternion<M>) {
+        self.orientation = orientation;
+        self.error = [Wide::from_bits(0); 2];
+        self.age = self.coefficients.start;
+    }
+}
+
+/// After a correction of the start, or a turn by more than ten degrees in a sample.
+#[cold]
+#[inline(never)]
+fn normalised_anywhere<M: Multiply>(q: Quaternion<M>) -> Quaternion<M> {
+    // A length of ½ to 2 is never left by one sample.
+    q.normalised_anywhere().unwrap_or(Quaternion::IDENTITY)
+}
