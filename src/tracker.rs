@@ -24,7 +24,7 @@ use crate::orientation::{DEFAULT_TIME_CONSTANT, angles};
 use crate::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use crate::sensor::{Ranges, RawSample, Sample};
 use crate::units::{MagneticField, Seconds, SpecificForce};
-use crate::wire::{self, Decimals, Line, Tag};
+use crate::wire::{self, Decimals, Line, Q30, Tag};
 use calibration::Calibration;
 use compass::Compass;
 use estimators::Estimators;
@@ -380,14 +380,20 @@ impl Tracker {
         if !self.every(LINE_EVERY) {
             return;
         }
-        let fused = || wire::quaternion(Tag::Fused, &self.estimators.orientation(), self.decimals);
+        let fused = || {
+            wire::quaternion(
+                Tag::Fused,
+                Q30::from(&self.estimators.orientation()),
+                self.decimals,
+            )
+        };
         match self.mode {
             Mode::Info => {}
             Mode::Flat => emit(&wire::flat(&self.flat.roll())),
             Mode::ThreeD => {
                 emit(&wire::quaternion(
                     Tag::Gyro,
-                    &self.gyro.orientation(),
+                    Q30::from(&self.gyro.orientation()),
                     self.decimals,
                 ));
                 emit(&wire::angles(&angles::pitch_and_roll(reading.force())));
