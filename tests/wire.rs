@@ -1,4 +1,19 @@
-//! Every line to the byte: a changed line turns a test red before it turns a viewer blank.
+//! Every line and frame to the byte: a changed one turns a test red before it turns a viewer blank.
+
+#[path = "random/mod.rs"]
+mod random;
+
+#[path = "wire/orientation.rs"]
+mod orientation;
+
+#[path = "wire/frame.rs"]
+mod frame;
+
+#[path = "wire/hosts.rs"]
+mod hosts;
+
+#[path = "wire/decoder.rs"]
+mod decoder;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use vrduino::calibration::Rest;

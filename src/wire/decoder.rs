@@ -82,6 +82,8 @@ pub struct Decoder {
     bytes: Vec<u8, LINE_LEN>,
     /// What is in `bytes` is an event's, to be cleared with the next byte.
     handed_out: bool,
+    /// The orientation before had a stamp.
+    stamped: bool,
     losses: Losses,
 }
 
@@ -98,6 +100,7 @@ impl Decoder {
             place: Place::Line,
             bytes: Vec::new(),
             handed_out: false,
+            stamped: false,
             losses: Losses::none(),
         }
     }
@@ -189,15 +192,26 @@ impl Decoder {
     }
 
     fn settle(&mut self, event: Result<Event<'static>, Damage>) -> Option<Event<'static>> {
-        match event {
-            Ok(Event::Orientation(Received {
-                stamp: Some(stamp), ..
-            })) => self.losses.follow(stamp.sequence),
-            Ok(_) => {}
-            Err(damage) => self.losses.refuse(damage, self.bytes.len()),
+        let event = event.and_then(|event| self.follow(event));
+        if let Err(damage) = event {
+            self.losses.refuse(damage, self.bytes.len());
         }
         self.bytes.clear();
         event.ok()
+    }
+
+    /// A plain line behind an orientation with a stamp is rather the beginning of a line whose end is damaged:
+    /// only a second one is believed.
+    fn follow(&mut self, event: Event<'static>) -> Result<Event<'static>, Damage> {
+        if let Event::Orientation(Received { stamp, .. }) = event {
+            let before = core::mem::replace(&mut self.stamped, stamp.is_some());
+            match stamp {
+                Some(stamp) => self.losses.follow(stamp.sequence),
+                None if before => return Err(Damage::Malformed),
+                None => {}
+            }
+        }
+        Ok(event)
     }
 }
 

@@ -17,7 +17,8 @@ impl Q30 {
 }
 
 impl From<&UnitQuaternion<f32>> for Q30 {
-    /// To the nearest bit; 2 or more is just below 2, and what is not a number 0.
+    /// To the nearest bit, halves away from zero; exactly from 2⁻⁷ on. 2 or more is just below 2, and
+    /// what is not a number 0.
     fn from(q: &UnitQuaternion<f32>) -> Self {
         Self([q.w, q.i, q.j, q.k].map(nearest))
     }
@@ -34,10 +35,8 @@ fn nearest(value: f32) -> i32 {
         128.. => i32::MAX,
         120.. => (significand << (exponent - 120)) as i32,
         96.. => {
-            // A half towards zero. It can then never become the half of a decimal, which is rounded away from
-            // zero: nothing is rounded twice in the same direction.
             let shift = 120 - exponent;
-            ((significand + (1 << (shift - 1)) - 1) >> shift) as i32
+            ((significand + (1 << (shift - 1))) >> shift) as i32
         }
         _ => 0,
     };

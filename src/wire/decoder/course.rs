@@ -54,8 +54,8 @@ fn digits(word: &str) -> Option<&str> {
         .then_some(word)
 }
 
-/// Four digits.
+/// Four digits, capitals only: as they are sent.
 fn hexadecimal(word: &str) -> Option<u16> {
-    let digits = word.len() == 4 && word.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let digits = word.len() == 4 && word.bytes().all(|b| matches!(b, b'0'..=b'9' | b'A'..=b'F'));
     digits.then(|| u16::from_str_radix(word, 16).ok())?
 }
