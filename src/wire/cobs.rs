@@ -1,52 +1,52 @@
 //! Consistent overhead byte stuffing (S. Cheshire and M. Baker, 1999): bytes without a zero among them,
 //! so that a zero can stand between them.
 //!
-//! Every run of bytes up to a zero, or to the end, is written behind a byte that says how long it
-//! is, itself included. Only runs of up to 253 bytes are known here, which is more than any message has: one
-//! byte is added, whatever the message.
+//! Every zero is replaced by how many bytes further on the next one is, or the end; a byte in front says where
+//! the first one is. Here a message is short enough for that to be all: the original algorithm has a
+//! special case beyond.
 
-use heapless::Vec;
+/// Most bytes that can be stuffed, the one in front included.
+pub const LONGEST: usize = 254;
 
-/// Longest run that is written as the original algorithm writes it.
-const LONGEST_RUN: usize = 253;
-
-/// Appends `message`, stuffed. What does not fit, or has too long a run, leaves `out` as it was.
+/// In place: the first byte is the one in front, whatever it was, and the others are the message.
 ///
 /// # Errors
 ///
-/// It does not fit.
-pub fn stuff<const N: usize>(message: &[u8], out: &mut Vec<u8, N>) -> Result<(), TooLong> {
-    let before = out.len();
-    for run in message.split(|&byte| byte == 0) {
-        let fits = run.len() <= LONGEST_RUN
-            && out.push(run.len() as u8 + 1).is_ok()
-            && out.extend_from_slice(run).is_ok();
-        if !fits {
-            out.truncate(before);
-            return Err(TooLong);
-        }
+/// There are more than [`LONGEST`], and all are as they were.
+pub fn stuff(bytes: &mut [u8]) -> Result<(), TooLong> {
+    if bytes.len() > LONGEST {
+        return Err(TooLong);
     }
+    let Some((front, message)) = bytes.split_first_mut() else {
+        return Ok(());
+    };
+    let mut distance = 1;
+    for byte in message.iter_mut().rev() {
+        if *byte == 0 {
+            *byte = distance;
+            distance = 0;
+        }
+        distance += 1;
+    }
+    *front = distance;
     Ok(())
 }
 
-/// The message that was stuffed. None if these bytes are no stuffed message of at most `N` bytes.
-pub fn unstuff<const N: usize>(mut stuffed: &[u8]) -> Option<Vec<u8, N>> {
-    let mut message = Vec::new();
-    while let Some((&length, rest)) = stuffed.split_first() {
-        let length = usize::from(length).checked_sub(1)?;
-        let (run, rest) = rest.split_at_checked(length)?;
-        if length > LONGEST_RUN || run.contains(&0) {
+/// In place: returns the message, if these bytes are one that was stuffed.
+pub fn unstuff(bytes: &mut [u8]) -> Option<&[u8]> {
+    let mut at = 0;
+    while let Some(place) = bytes.get_mut(at) {
+        let distance = usize::from(core::mem::take(place));
+        let next = at + distance;
+        if distance == 0 || bytes.get(at + 1..next)?.contains(&0) {
             return None;
         }
-        message.extend_from_slice(run).ok()?;
-        if !rest.is_empty() {
-            message.push(0).ok()?;
-        }
-        stuffed = rest;
+        at = next;
     }
-    Some(message)
+    let (_, message) = bytes.split_first()?;
+    (at == message.len() + 1).then_some(message)
 }
 
-/// There is no room for so many bytes.
+/// There are too many bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLong;

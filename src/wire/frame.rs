@@ -70,7 +70,12 @@ pub enum Damage {
 #[inline(never)] // a function of its own in the image, which the emulator times
 pub fn orientation(q: Q30, provenance: Provenance) -> Frame {
     let mut frame = Frame::new();
-    append(&mut frame, ORIENTATION, provenance, &words(q));
+    append(
+        &mut frame,
+        ORIENTATION,
+        provenance,
+        q.0.map(i32::to_le_bytes),
+    );
     frame
 }
 
@@ -84,47 +89,41 @@ pub fn orientation_and_counts(q: Q30, provenance: Provenance, counts: &Counts) -
         temperature,
         fresh: _, // the status says so
     } = counts.sample;
-    let mut payload: Vec<u8, 20> = Vec::new();
     let field = counts
         .field
         .filter(|field| field.resolution == Resolution::Bits16 && !field.overflow);
-    let field = field.map(|field| field.counts);
-    let words = gyro.iter().chain(&accel).chain([&temperature]);
-    for word in words.chain(field.iter().flatten()) {
-        // Ten words at most.
-        let _ = payload.extend_from_slice(&word.to_le_bytes());
-    }
     let kind = match field {
         Some(_) => COUNTS_WITH_FIELD,
         None => COUNTS,
     };
-    append(&mut frame, kind, provenance, &payload);
+    let field = field.iter().flat_map(|field| field.counts);
+    let words = gyro.into_iter().chain(accel).chain([temperature]);
+    let words = words.chain(field).map(i16::to_le_bytes);
+    append(&mut frame, kind, provenance, words);
     frame
 }
 
-fn append(frame: &mut Frame, kind: u8, provenance: Provenance, payload: &[u8]) {
-    let Provenance { stamp, status } = provenance;
-    let mut message: Vec<u8, MESSAGE_LEN> = Vec::new();
+/// One more frame, which always fits: see the lengths above.
+fn append<const N: usize>(
+    frame: &mut Frame,
+    kind: u8,
+    from: Provenance,
+    payload: impl IntoIterator<Item = [u8; N]>,
+) {
+    let Provenance { stamp, status } = from;
     let [low, high] = stamp.sequence.to_le_bytes();
     let [a, b, c, d] = stamp.micros.to_le_bytes();
-    let header: [u8; HEADER] = [kind, status.to_byte(), low, high, a, b, c, d];
-    // Header, at most twenty bytes, and the checksum are a message; two messages are a packet.
-    let _ = message.extend_from_slice(&header);
-    let _ = message.extend_from_slice(payload);
-    let crc = crc16(&message);
-    let _ = message.extend_from_slice(&crc.to_le_bytes());
-    let _ = frame.push(0);
-    let _ = stuff(&message, frame);
-    let _ = frame.push(0);
-}
-
-fn words(q: Q30) -> [u8; 16] {
-    let mut bytes = [0; 16];
-    let (places, _) = bytes.as_chunks_mut();
-    for (place, component) in places.iter_mut().zip(q.0) {
-        *place = component.to_le_bytes();
+    let start = frame.len();
+    // A zero, and the place in front of the message that the stuffing needs.
+    let opening = [0, 0, kind, status.to_byte(), low, high, a, b, c, d];
+    let _ = frame.extend_from_slice(&opening);
+    for word in payload {
+        let _ = frame.extend_from_slice(&word);
     }
-    bytes
+    let crc = crc16(frame.get(start + 2..).unwrap_or_default());
+    let _ = frame.extend_from_slice(&crc.to_le_bytes());
+    let _ = stuff(frame.get_mut(start + 1..).unwrap_or_default());
+    let _ = frame.push(0);
 }
 
 /// What stood between two zeros.
@@ -133,7 +132,9 @@ fn words(q: Q30) -> [u8; 16] {
 ///
 /// [`Damage`] says why it is no frame.
 pub fn parse(stuffed: &[u8]) -> Result<Message, Damage> {
-    let message: Vec<u8, MESSAGE_LEN> = unstuff(stuffed).ok_or(Damage::Malformed)?;
+    let mut bytes: Vec<u8, STUFFED_LEN> =
+        Vec::from_slice(stuffed).map_err(|_| Damage::Malformed)?;
+    let message = unstuff(&mut bytes).ok_or(Damage::Malformed)?;
     let (body, crc) = message.split_last_chunk().ok_or(Damage::Malformed)?;
     if crc16(body) != u16::from_le_bytes(*crc) {
         return Err(Damage::Checksum);

@@ -3,7 +3,7 @@
 use super::random::Random;
 use vrduino::sensor::RawSample;
 use vrduino::sensor::magnetometer::{RawField, Resolution};
-use vrduino::wire::cobs::{TooLong, stuff, unstuff};
+use vrduino::wire::cobs::{LONGEST, TooLong, stuff, unstuff};
 use vrduino::wire::frame::{self, Counts, Damage, Message};
 use vrduino::wire::provenance::Compass;
 use vrduino::wire::{PACKET_LEN, Provenance, Q30, Stamp, Status};
@@ -242,30 +242,32 @@ fn stuffed_bytes_have_no_zero_and_come_back() {
         ("11 22 33 44", "05 11 22 33 44"),
         ("11 00 00 00", "02 11 01 01 01"),
     ] {
-        let mut out = heapless::Vec::<u8, 64>::new();
-        stuff(&bytes(message), &mut out).expect("it fits");
-        assert_eq!(out.as_slice(), bytes(stuffed));
+        let mut out = [vec![0xAA], bytes(message)].concat();
+        stuff(&mut out).expect("it is short");
+        assert_eq!(out, bytes(stuffed));
     }
     let mut random = Random(6);
     for round in 0..100_000 {
-        let length = round % 61;
+        let length = round % LONGEST;
         let zeros = random.unit();
         let mut byte = || match random.unit() < zeros {
             true => 0,
             false => random.between(0.0, 256.0) as u8,
         };
         let message: Vec<u8> = (0..length).map(|_| byte()).collect();
-        let mut out = heapless::Vec::<u8, 64>::new();
-        stuff(&message, &mut out).expect("it fits");
-        assert_eq!(out.len(), message.len() + 1);
+        let mut out = [vec![0], message.clone()].concat();
+        stuff(&mut out).expect("it is short");
         assert!(!out.contains(&0));
-        assert_eq!(unstuff::<64>(&out).expect("a message").as_slice(), message);
+        assert_eq!(unstuff(&mut out), Some(message.as_slice()));
     }
-    let mut small = heapless::Vec::<u8, 4>::new();
-    small.push(9).expect("room");
-    assert_eq!(stuff(&[1, 2, 3], &mut small), Err(TooLong));
-    assert_eq!(small, [9], "as it was");
-    assert_eq!(unstuff::<2>(&[4, 1, 2, 3]), None);
-    assert_eq!(unstuff::<9>(&[3, 1]), None, "cut short");
-    assert_eq!(unstuff::<9>(&[3, 1, 0]), None, "a zero");
+    let mut long = [7; LONGEST + 1];
+    assert_eq!(stuff(&mut long), Err(TooLong));
+    assert_eq!(long, [7; LONGEST + 1], "as they were");
+    assert_eq!(unstuff(&mut [0; 0]), None);
+    assert_eq!(unstuff(&mut [1]), Some([].as_slice()));
+    assert_eq!(unstuff(&mut [3, 1]), None, "cut short");
+    assert_eq!(unstuff(&mut [3, 1, 2, 0]), None, "a zero");
+    assert_eq!(unstuff(&mut [3, 0, 1]), None, "a zero");
+    assert_eq!(unstuff(&mut [2, 9, 0]), None, "a zero");
+    assert_eq!(unstuff(&mut [255; 255]), Some([255; 254].as_slice()));
 }
