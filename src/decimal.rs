@@ -28,41 +28,18 @@ impl Decimal {
     pub fn write_to(self, out: &mut impl Write) -> fmt::Result {
         let Self(value, decimals) = self;
         let decimals = decimals.min(6);
-        let steps = magnitude_in_steps(value, 10_u64.pow(decimals));
-        write_steps(out, value < 0.0, steps, decimals)
+        let one = 10_u64.pow(decimals);
+        let steps = magnitude_in_steps(value, one);
+        if value < 0.0 && steps > 0 {
+            out.write_char('-')?;
+        }
+        write_digits(out, steps / one, 1)?;
+        if decimals == 0 {
+            return Ok(());
+        }
+        out.write_char('.')?;
+        write_digits(out, steps % one, decimals as usize)
     }
-}
-
-/// A number with 30 fraction bits, with so many decimals, at most 6: rounded as a [`Decimal`] is.
-///
-/// # Errors
-///
-/// Those of `out`.
-pub fn write_q30(out: &mut impl Write, bits: i32, decimals: u32) -> fmt::Result {
-    let decimals = decimals.min(6);
-    // 31 bits times 20 bits, and half a step of the last decimal.
-    let product = u64::from(bits.unsigned_abs()) * 10_u64.pow(decimals);
-    let steps = (product + (1 << 29)) >> 30;
-    write_steps(out, bits < 0, steps, decimals)
-}
-
-/// So many steps of the last decimal; none has no sign.
-fn write_steps(out: &mut impl Write, negative: bool, steps: u64, decimals: u32) -> fmt::Result {
-    let one = 10_u64.pow(decimals);
-    if negative && steps > 0 {
-        out.write_char('-')?;
-    }
-    // 32-bit division is an instruction on the target, 64-bit division a routine.
-    let (whole, rest) = match (u32::try_from(steps), one as u32) {
-        (Ok(steps), one) => (u64::from(steps / one), u64::from(steps % one)),
-        _ => (steps / one, steps % one),
-    };
-    write_digits(out, whole, 1)?;
-    if decimals == 0 {
-        return Ok(());
-    }
-    out.write_char('.')?;
-    write_digits(out, rest, decimals as usize)
 }
 
 /// A scalar of either precision with so many decimals.

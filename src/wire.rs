@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `lines` | the course's lines and those for people |
 //! | `orientation` | `QC w x y z`, the course's line, and the same with its provenance |
+//! | `from_the_end` | its digits, in the order they come |
 //! | `q30` | the quaternion as the wire takes it |
 //! | `provenance` | which orientation, of which moment, and how far it is to be trusted |
 //! | `frame` | the same in binary |
@@ -17,6 +18,8 @@
 pub mod lines;
 
 pub mod orientation;
+
+mod from_the_end;
 
 pub mod q30;
 
