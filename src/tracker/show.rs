@@ -46,7 +46,8 @@ impl Tracker {
         self.stream.fused(q, self.micros(), status, counts, emit)
     }
 
-    /// Device time at which the sensor had the sample ready, in µs since the start.
+    /// Device time at which the sensor had the sample ready, in µs since the start: by the number of
+    /// samples, for the timer is the time base.
     fn micros(&self) -> u32 {
         self.ticks.wrapping_mul(SAMPLE_MICROS)
     }

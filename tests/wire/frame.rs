@@ -6,7 +6,7 @@ use vrduino::sensor::magnetometer::{RawField, Resolution};
 use vrduino::wire::cobs::{LONGEST, TooLong, stuff, unstuff};
 use vrduino::wire::frame::{self, Counts, Damage, Message};
 use vrduino::wire::provenance::Compass;
-use vrduino::wire::{PACKET_LEN, Provenance, Q30, Stamp, Status};
+use vrduino::wire::{self, Decimals, PACKET_LEN, Provenance, Q30, Stamp, Status, Tag};
 
 const QUARTER: Q30 = Q30([759_250_125, 0, 759_250_125, 0]);
 
@@ -270,4 +270,30 @@ fn stuffed_bytes_have_no_zero_and_come_back() {
     assert_eq!(unstuff(&mut [3, 0, 1]), None, "a zero");
     assert_eq!(unstuff(&mut [2, 9, 0]), None, "a zero");
     assert_eq!(unstuff(&mut [255; 255]), Some([255; 254].as_slice()));
+}
+
+/// The examples of the specification are what is sent.
+#[test]
+fn the_document_says_so() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/wire-format.md");
+    let text = std::fs::read_to_string(path).expect("the document");
+    let after = |start: &str| {
+        let mut lines = text.lines();
+        lines
+            .find_map(|line| line.strip_prefix(start))
+            .expect("the example")
+    };
+    let provenance = provenance(0x50, 7, 1_234_567);
+    let frame = frame::orientation(QUARTER, provenance);
+    assert_eq!(frame.as_slice(), bytes(after("sent  ")), "{frame:x?}");
+    let mut message = bytes(after("message  "));
+    message.insert(0, 0);
+    stuff(&mut message).expect("it is short");
+    assert_eq!(message, frame[1..frame.len() - 1]);
+    for line in [
+        wire::timed(QUARTER, provenance.stamp, Decimals::COURSE),
+        wire::quaternion(Tag::Fused, QUARTER, Decimals::COURSE),
+    ] {
+        assert!(text.contains(&format!("```text\n{line}```")), "{line}");
+    }
 }
