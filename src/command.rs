@@ -7,6 +7,7 @@
 
 mod number;
 pub mod request;
+mod setting;
 
 use heapless::String;
 use request::{Refusal, Request};

@@ -54,7 +54,10 @@ fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> 
         }
         breadcrumb::mark(Stage::Filter);
         let health = board.health();
-        tracker.update(&sample, field, &health, &mut |line| board.usb.send(line));
+        let frame = tracker.update(&sample, field, &health, &mut |line| board.usb.send(line));
+        if let Some(frame) = frame {
+            board.usb.send(&frame);
+        }
         board.end_of_turn();
     }
 }

@@ -13,29 +13,36 @@ mod answers;
 mod calibration;
 mod compass;
 mod estimators;
+mod show;
+mod stream;
 
 use crate::calibration::record::Record;
 use crate::calibration::{Reading, Rest, Stillness, Verdict};
 use crate::command::request::UseCompass;
 use crate::command::{Command, Mode};
+use crate::orientation::DEFAULT_TIME_CONSTANT;
 use crate::orientation::flatland::Flatland;
 use crate::orientation::gyro::DeadReckoning;
-use crate::orientation::{DEFAULT_TIME_CONSTANT, angles};
 use crate::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use crate::sensor::{Ranges, RawSample, Sample};
 use crate::units::{MagneticField, Seconds, SpecificForce};
-use crate::wire::{self, Decimals, Line, Tag};
+use crate::wire::frame::{Counts, Frame};
+use crate::wire::{self, Line};
 use calibration::Calibration;
 use compass::Compass;
 use estimators::Estimators;
 use nalgebra::UnitQuaternion;
+use stream::Stream;
 
 /// The sensor's own rate with its filter in use, 1 kHz.
 pub const SAMPLE_PERIOD: Seconds<f32> = Seconds(0.001);
 
-/// Samples per line: 100 lines a second. The course's Unity script reads 64 bytes per frame and
-/// falls behind by a second above about 128 lines a second.
-pub const LINE_EVERY: u32 = 10;
+/// The same in µs.
+const SAMPLE_MICROS: u32 = 1000;
+
+/// Samples per line, if nobody asks for more or less: 100 lines a second. The course's Unity script reads
+/// 64 bytes per frame and falls behind by a second above about 128 lines a second.
+pub const LINE_EVERY: u16 = 10;
 
 /// Samples per INFO block: one second.
 const INFO_EVERY: u32 = 1000;
@@ -66,7 +73,7 @@ pub struct Health {
 pub struct Tracker {
     ranges: Ranges,
     mode: Mode,
-    decimals: Decimals,
+    stream: Stream,
     /// The window the bias came from; none if it was never still.
     rest: Option<Rest>,
     measurement: Option<Measurement>,
@@ -80,7 +87,7 @@ pub struct Tracker {
     calibration: Calibration,
     phase: Phase,
     ticks: u32,
-    counts: Counts,
+    counts: Tally,
 }
 
 /// Whether there is an orientation, and what the next sample is to do to it.
@@ -103,7 +110,7 @@ struct Measurement {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Counts {
+struct Tally {
     fresh_this_second: u32,
     fresh_last_second: u32,
     repeated: u32,
@@ -119,7 +126,7 @@ impl Tracker {
         Self {
             ranges,
             mode: Mode::default(),
-            decimals: Decimals::COURSE,
+            stream: Stream::default(),
             rest: None,
             measurement: Some(Measurement::new(ranges)),
             bias_unknown: false,
@@ -131,7 +138,7 @@ impl Tracker {
             calibration: Calibration::new(),
             phase: Phase::Starting,
             ticks: 0,
-            counts: Counts::default(),
+            counts: Tally::default(),
         }
     }
 
@@ -207,14 +214,18 @@ impl Tracker {
 
     /// One sample, with what the magnetometer has measured since the one before, if it has. `emit` is
     /// given the lines they lead to: mostly none, every tenth time one to three, and once a second
-    /// up to eleven.
+    /// up to eleven. Returns the binary frame of this sample, where one is asked for and due.
     pub fn update(
         &mut self,
         raw: &RawSample,
         field: Option<RawField>,
         health: &Health,
         emit: &mut impl FnMut(&Line),
-    ) {
+    ) -> Option<Frame> {
+        let counts = Counts {
+            sample: *raw,
+            field,
+        };
         self.count(raw);
         self.tell_of_clipping(raw, emit);
         let measured = self.compass.update(field);
@@ -227,9 +238,10 @@ impl Tracker {
         self.track(raw, field);
         self.measure(raw, emit);
         self.tell_of_bias(emit);
-        if self.phase != Phase::Starting {
-            self.show(raw, health, emit);
+        if self.phase == Phase::Starting {
+            return None;
         }
+        self.show(&counts, health, emit)
     }
 
     fn count(&mut self, raw: &RawSample) {
@@ -293,12 +305,12 @@ impl Tracker {
     }
 
     /// In physical units, with the force corrected and the gyro's bias still in it.
-    fn sample(&self, raw: &RawSample) -> Sample<f32> {
+    pub(super) fn sample(&self, raw: &RawSample) -> Sample<f32> {
         self.calibration.sample(self.ranges.sample(raw))
     }
 
     /// The same without the bias that the estimator takes off.
-    fn reading(&self, raw: &RawSample) -> Reading<f32> {
+    pub(super) fn reading(&self, raw: &RawSample) -> Reading<f32> {
         self.estimators.bias().correct(self.sample(raw))
     }
 
@@ -370,58 +382,6 @@ impl Tracker {
                 "warning: never still yet, the heading drifts: lay the board down for two seconds",
             ));
         }
-    }
-
-    fn show(&self, raw: &RawSample, health: &Health, emit: &mut impl FnMut(&Line)) {
-        if self.mode == Mode::Info {
-            if self.every(INFO_EVERY) {
-                self.show_info(health, emit);
-            }
-            return;
-        }
-        if !self.every(LINE_EVERY) {
-            return;
-        }
-        let fused = || wire::quaternion(Tag::Fused, &self.estimators.orientation(), self.decimals);
-        match self.mode {
-            Mode::Info => {}
-            Mode::Flat => emit(&wire::flat(&self.flat.roll())),
-            Mode::ThreeD => {
-                emit(&wire::quaternion(
-                    Tag::Gyro,
-                    &self.gyro.orientation(),
-                    self.decimals,
-                ));
-                emit(&wire::angles(&angles::pitch_and_roll(
-                    self.sample(raw).force,
-                )));
-                emit(&fused());
-            }
-            Mode::Gyro => emit(&wire::gyro(self.reading(raw).rate())),
-            Mode::Accel => emit(&wire::force(self.sample(raw).force)),
-            Mode::Quaternion => emit(&fused()),
-        }
-    }
-
-    fn show_info(&self, health: &Health, emit: &mut impl FnMut(&Line)) {
-        emit(&wire::reads_per_second(self.counts.fresh_last_second));
-        emit(&wire::gyro_bias(self.estimators.bias().rate()));
-        // Nothing is known of the rest if the board never rested.
-        if let Some(rest) = &self.rest {
-            emit(&wire::gyro_variance(rest));
-            emit(&wire::force_mean(rest));
-            emit(&wire::force_variance(rest));
-        }
-        emit(&wire::dropped(health.dropped_lines));
-        emit(&wire::repeated(self.counts.repeated));
-        emit(&wire::overruns(health.overruns));
-        emit(&wire::clipped(self.counts.clipped));
-        match self.compass.last() {
-            Some(Ok(field)) => emit(&wire::field(field, self.compass.per_second())),
-            Some(Err(error)) => emit(&wire::text(format_args!("Field: {error}"))),
-            None => emit(&wire::no_field()),
-        }
-        emit(&wire::fields_skipped(health.skipped_fields));
     }
 }
 

@@ -4,7 +4,7 @@
 mod random;
 
 use random::Random;
-use vrduino::command::request::{Choice, Request, Setting, UseCompass};
+use vrduino::command::request::{Choice, Format, Request, Setting, UseCompass};
 use vrduino::command::{Command, Mode, Parser};
 use vrduino::wire::{Decimals, LINE_LEN};
 
@@ -74,6 +74,14 @@ fn every_verb_is_understood() {
         ),
         ("decimals", Request::Decimals(None)),
         ("decimals 5", Request::Decimals(Decimals::new(5))),
+        ("stream", Request::Stream(None)),
+        ("stream text", Request::Stream(Some(Format::Text))),
+        ("stream timed", Request::Stream(Some(Format::Timed))),
+        ("stream binary", Request::Stream(Some(Format::Binary))),
+        ("stream counts", Request::Stream(Some(Format::Counts))),
+        ("every", Request::Every(None)),
+        ("every 1", Request::Every(Some(1))),
+        ("every 1000", Request::Every(Some(1000))),
         ("compass", Request::Compass(None)),
         ("compass on", Request::Compass(Some(UseCompass::On))),
         ("compass auto", Request::Compass(Some(UseCompass::Auto))),
@@ -122,6 +130,11 @@ fn a_refusal_names_the_word_and_fits_a_line() {
         ("set field-tolerance 0", "0: field-tolerance is 0.01 to 1 "),
         ("decimals 2", "2: 3 to 6 is wanted"),
         ("decimals many", "many: 3 to 6 is wanted"),
+        ("stream hex", "hex: text, timed, binary or counts is wanted"),
+        ("every 0", "0: 1 to 1000 is wanted"),
+        ("every 1001", "1001: 1 to 1000 is wanted"),
+        ("every -1", "-1: 1 to 1000 is wanted"),
+        ("every 99999999", "99999999: 1 to 1000 is wanted"),
         ("bias now", "now: one word too many"),
         ("help me", "me: one word too many"),
         ("caf\u{e9}", "caf??: no such verb, :help lists them"),

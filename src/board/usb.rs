@@ -1,7 +1,7 @@
-//! The serial port: lines out, keys in, and nothing that ever waits for the host.
+//! The serial port: lines and frames out, keys in, and nothing that ever waits for the host.
 //!
-//! The main program puts whole lines into a queue and takes keys out of another; the USB interrupt
-//! does the rest. A line that finds the queue full is dropped and counted.
+//! The main program puts whole lines and frames into a queue and takes keys out of another; the USB
+//! interrupt does the rest. What finds the queue full is dropped and counted.
 
 mod buffers;
 mod bus;
@@ -13,6 +13,7 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use cortex_m::peripheral::NVIC;
 use critical_section::Mutex;
+use heapless::Vec;
 use heapless::spsc::{Consumer, Producer, Queue};
 use mk20dx_hal::interrupt;
 use mk20dx_hal::pac::{self, Interrupt};
@@ -20,7 +21,7 @@ use usb_device::bus::UsbBusAllocator;
 use usb_device::device::{UsbDevice, UsbDeviceState};
 use usbd_serial::CdcAcmClass;
 use vrduino::command::{Command, Parser};
-use vrduino::wire::Line;
+use vrduino::wire::LINE_LEN;
 
 use super::breadcrumb::{self, Stage};
 use super::loader;
@@ -37,6 +38,9 @@ const PACKET: usize = 63;
 /// Below sampling (0x40).
 const PRIORITY: u8 = 0x80;
 
+/// A line or a frame.
+type Whole = Vec<u8, LINE_LEN>;
+
 static PORT: Mutex<RefCell<Option<&'static mut Port>>> = Mutex::new(RefCell::new(None));
 /// Under a name that survives optimisation, so that the emulator can report it.
 // SAFETY: no other item has this name.
@@ -52,7 +56,7 @@ pub fn dropped_lines() -> u32 {
 
 /// The main program's end of the serial port.
 pub struct Usb {
-    lines: Producer<'static, Line>,
+    lines: Producer<'static, Whole>,
     keys: Consumer<'static, u8>,
     parser: Parser,
 }
@@ -60,7 +64,7 @@ pub struct Usb {
 impl Usb {
     /// Switches USB on; the host sees the board from here on.
     pub fn new(registers: pac::Usb0, sim: &pac::Sim) -> Usb {
-        let lines = cortex_m::singleton!(: Queue<Line, { WAITING_LINES + 1 }> = Queue::new())
+        let lines = cortex_m::singleton!(: Queue<Whole, { WAITING_LINES + 1 }> = Queue::new())
             .expect("the board is taken once");
         let keys = cortex_m::singleton!(: Queue<u8, { WAITING_KEYS + 1 }> = Queue::new())
             .expect("the board is taken once");
@@ -88,9 +92,11 @@ impl Usb {
         }
     }
 
-    /// Sends a line, or drops and counts it.
-    pub fn send(&mut self, line: &Line) {
-        if self.lines.enqueue(line.clone()).is_err() {
+    /// Sends a line or a frame, or drops and counts it.
+    pub fn send(&mut self, whole: &impl AsRef<[u8]>) {
+        let queued =
+            Whole::from_slice(whole.as_ref()).is_ok_and(|whole| self.lines.enqueue(whole).is_ok());
+        if !queued {
             DROPPED_LINES.store(dropped_lines().wrapping_add(1), Ordering::Relaxed);
         }
         NVIC::pend(Interrupt::USB0);
@@ -126,10 +132,10 @@ impl Usb {
 struct Port {
     device: UsbDevice<'static, Bus>,
     class: CdcAcmClass<'static, Bus>,
-    lines: Consumer<'static, Line>,
+    lines: Consumer<'static, Whole>,
     keys: Producer<'static, u8>,
     /// The line on its way and how much of it is gone.
-    current: Option<(Line, usize)>,
+    current: Option<(Whole, usize)>,
     /// DTR, as it was last.
     open: bool,
 }
@@ -180,7 +186,7 @@ impl Port {
             let Some((line, sent)) = &mut self.current else {
                 return;
             };
-            let rest = line.as_bytes().get(*sent..).unwrap_or_default();
+            let rest = line.get(*sent..).unwrap_or_default();
             if rest.is_empty() {
                 self.current = None;
                 continue;

@@ -2,9 +2,10 @@
 
 use super::Tracker;
 use super::estimators::Estimators;
-use crate::command::request::{Choice, Refusal, Request, Setting, UseCompass};
-use crate::fusion::{FieldVerdict, Fusion, Motion, Source};
+use crate::command::request::{Choice, Format, Refusal, Request, Setting, UseCompass};
+use crate::fusion::{Fusion, Motion, Source};
 use crate::units::AngularRate;
+use crate::wire::provenance::Compass;
 use crate::wire::{self, Decimals, Line};
 
 impl Tracker {
@@ -14,7 +15,7 @@ impl Tracker {
         match line {
             Err(refusal) => wire::text(format_args!("ERR {refusal}")),
             Ok(Request::Help) => wire::text(
-                "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals",
+                "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals stream every",
             ),
             Ok(Request::Version) => wire::text(concat!("OK vrduino ", env!("CARGO_PKG_VERSION"))),
             Ok(Request::Estimator(choice)) => {
@@ -30,7 +31,7 @@ impl Tracker {
             }
             Ok(Request::Defaults) => {
                 estimators.set_defaults();
-                self.decimals = Decimals::COURSE;
+                self.stream.set_defaults();
                 self.use_compass = UseCompass::default();
                 wire::text("OK defaults")
             }
@@ -55,9 +56,21 @@ impl Tracker {
             }
             Ok(Request::Decimals(decimals)) => {
                 if let Some(decimals) = decimals {
-                    self.decimals = decimals;
+                    self.stream.set_decimals(decimals);
                 }
-                wire::text(format_args!("OK decimals {}", self.decimals.get()))
+                self.decimals_state()
+            }
+            Ok(Request::Stream(format)) => {
+                if let Some(format) = format {
+                    self.stream.choose(format);
+                }
+                self.stream_state()
+            }
+            Ok(Request::Every(samples)) => {
+                if let Some(samples) = samples {
+                    self.stream.set_every(samples);
+                }
+                self.stream_state()
             }
             Ok(Request::Bias) => bias(estimators),
         }
@@ -65,6 +78,24 @@ impl Tracker {
 }
 
 impl Tracker {
+    fn stream_state(&self) -> Line {
+        let (format, every) = (self.stream.format().name(), self.stream.every());
+        wire::text(format_args!("OK stream {format} every {every}"))
+    }
+
+    fn decimals_state(&self) -> Line {
+        let decimals = self.stream.decimals();
+        let most = Decimals::MOST_TIMED;
+        match self.stream.format() {
+            Format::Timed if decimals > most => wire::text(format_args!(
+                "OK decimals {}, {} in timed lines",
+                decimals.get(),
+                most.get()
+            )),
+            _ => wire::text(format_args!("OK decimals {}", decimals.get())),
+        }
+    }
+
     /// The choice, and what it comes to.
     fn compass_state(&self) -> Line {
         let choice = match self.use_compass {
@@ -72,12 +103,14 @@ impl Tracker {
             UseCompass::On => "on",
             UseCompass::Off => "off",
         };
-        let state = match self.estimators.fusion().field_verdict() {
-            _ if self.compass.per_second() == 0 => "no field",
-            _ if !self.follows_compass() => "not used, the field is not calibrated",
-            FieldVerdict::Absent => "no field",
-            FieldVerdict::Undisturbed => "heading by compass",
-            FieldVerdict::Disturbed => "disturbed, heading by gyro",
+        let state = match self.compass_use() {
+            Compass::Absent => "no field",
+            Compass::Unused if self.estimators.choice() == Choice::Notes => {
+                "not used by the notes' filter"
+            }
+            Compass::Unused => "not used, the field is not calibrated",
+            Compass::Followed => "heading by compass",
+            Compass::Disturbed => "disturbed, heading by gyro",
         };
         match self.use_compass {
             UseCompass::Off => wire::text("OK compass off"),
