@@ -72,6 +72,9 @@ pub mod sensor;
 /// Finding the sensor on its bus, setting it up, and proving that it took the settings.
 pub mod imu;
 
+/// When to read the sensor, and when what was read was measured.
+pub mod sampling;
+
 /// Is the board still? If so, what does the gyro read when nothing turns?
 pub mod calibration;
 

@@ -45,7 +45,7 @@ fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> 
     tracker.set_magnetometer(adjustment);
     tracker.resume();
     loop {
-        let (sample, field) = board.next_sample()?;
+        let (sample, timing, field) = board.next_sample()?;
         while let Some(command) = board.usb.command() {
             tracker.command(command, &mut |line| board.usb.send(line));
         }
@@ -54,6 +54,7 @@ fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> 
         }
         breadcrumb::mark(Stage::Filter);
         let health = board.health();
+        tracker.timed(&timing);
         let frame = tracker.update(&sample, field, &health, &mut |line| board.usb.send(line));
         if let Some(frame) = frame {
             board.usb.send(&frame);

@@ -39,7 +39,7 @@ pub const BURST_LEN: usize = 15;
 pub type Burst = [u8; BURST_LEN];
 
 /// RAW_DATA_RDY_INT in INT_STATUS: the output registers hold a sample not yet read.
-const RAW_DATA_READY: u8 = 1 << 0;
+pub const RAW_DATA_READY: u8 = 1 << 0;
 
 /// Counts per full range: 2¹⁵.
 ///
@@ -87,6 +87,14 @@ impl RawSample {
             accel: [word(axh, axl), word(ayh, ayl), word(azh, azl)],
             temperature: word(th, tl),
             fresh: status & RAW_DATA_READY != 0,
+        }
+    }
+
+    /// The same once more, where the sensor had nothing new.
+    pub fn repeated(self) -> Self {
+        Self {
+            fresh: false,
+            ..self
         }
     }
 

@@ -2,11 +2,11 @@
 //! everything that follows: units, bias, filter, and every tenth time a line. The firmware and
 //! the tests run this same code.
 //!
-//! The timer is the time base, not the sensor. The sensor's own clock is a per cent or so off, so
-//! now and then a sample comes twice and now and then one is missed; a repeated one is integrated
-//! again (the rate is held for the sample that is not there) and counted.
+//! The sensor is the time base, and its clock a per cent or so off: [`Tracker::timed`] says by how much. A sample that
+//! could not be read is bridged by the one before (the rate is held for the sample that is not there) and counted.
 //!
 //! [`Tracker::update`]: crate::tracker::Tracker::update
+//! [`Tracker::timed`]: crate::tracker::Tracker::timed
 //! [`SAMPLE_PERIOD`]: crate::tracker::SAMPLE_PERIOD
 
 mod answers;
@@ -23,6 +23,7 @@ use crate::command::{Command, Mode};
 use crate::orientation::DEFAULT_TIME_CONSTANT;
 use crate::orientation::flatland::Flatland;
 use crate::orientation::gyro::DeadReckoning;
+use crate::sampling::Timing;
 use crate::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use crate::sensor::{Ranges, RawSample, Sample};
 use crate::units::{MagneticField, Seconds, SpecificForce};
@@ -62,7 +63,7 @@ pub const STILL_DEADLINE: u32 = 5000;
 pub struct Health {
     /// Lines thrown away because the host did not read.
     pub dropped_lines: u32,
-    /// Ticks of the timer that found the bus still busy with the last sample.
+    /// Samples that were never read, the bus being in error or in use, or that found no room on their way.
     pub overruns: u32,
     /// Times that measurements of the magnetometer were overwritten before they were read.
     pub skipped_fields: u32,
@@ -88,6 +89,9 @@ pub struct Tracker {
     phase: Phase,
     ticks: u32,
     counts: Tally,
+    timing: Timing,
+    /// The measured period over [`SAMPLE_PERIOD`]: a turn between two samples is that much larger.
+    stretch: f32,
 }
 
 /// Whether there is an orientation, and what the next sample is to do to it.
@@ -139,7 +143,18 @@ impl Tracker {
             phase: Phase::Starting,
             ticks: 0,
             counts: Tally::default(),
+            timing: Timing::default(),
+            stretch: 1.0,
         }
+    }
+
+    /// To be called before [`Tracker::update`] by those who know it: when the sample was ready, and how far apart
+    /// samples are. Without, they are [`SAMPLE_PERIOD`] apart.
+    pub fn timed(&mut self, timing: &Timing) {
+        if timing.period_ns != self.timing.period_ns {
+            self.stretch = timing.period_ns as f32 / (SAMPLE_PERIOD.0 * 1e9);
+        }
+        self.timing = *timing;
     }
 
     /// Takes a key, which has its effect with the next sample, or a line, which is answered at once.

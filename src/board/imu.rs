@@ -1,22 +1,24 @@
 //! The sensor on its bus: set up while the program waits, sampled by interrupt ever after
 //! (`sampling`).
 
+mod reader;
+
 mod sampling;
 
 use core::fmt;
 
 use embedded_hal::delay::DelayNs;
-use mk20dx_hal::clocks::Clocks;
-use mk20dx_hal::pac;
-use mk20dx_hal::timer::PitExt;
 use vrduino::imu::magnetometer::polling::{Loss, Polling};
 use vrduino::imu::magnetometer::{self, MagnetometerError};
 use vrduino::imu::{self, ImuError};
+use vrduino::sampling::Timing;
 use vrduino::sensor::RawSample;
 use vrduino::sensor::magnetometer::{RawField, SensitivityAdjustment};
 
 use super::clock::{self, Time};
+use super::dma::Dma;
 use super::i2c::{Error, I2c};
+use super::timer::Alarm;
 use super::watchdog::Watchdog;
 use sampling::Samples;
 
@@ -81,19 +83,11 @@ pub struct Imu {
 }
 
 impl Imu {
-    /// Takes bus and timer, and starts the timer: from here on milliseconds are counted.
-    pub fn new(
-        registers: pac::I2c0,
-        port: pac::Portb,
-        gpio: pac::Ptb,
-        pit: pac::Pit,
-        sim: &pac::Sim,
-        clocks: &Clocks,
-    ) -> Imu {
-        let samples = sampling::start(pit.split(sim, clocks).ch0);
+    /// Takes the bus and what serves it, and sets the alarm: from here on milliseconds are counted.
+    pub fn new(bus: I2c, dma: Dma, alarm: Alarm) -> Imu {
         Imu {
-            bus: Some(I2c::new(registers, port, gpio, sim)),
-            samples,
+            bus: Some(bus),
+            samples: sampling::start(alarm, dma),
             last: RawSample::default(),
             failures: 0,
             repeats: 0,
@@ -119,9 +113,11 @@ impl Imu {
         Ok(compass)
     }
 
-    /// Sleeps until the next burst has come in, or has failed and is bridged. Now and then the
-    /// magnetometer has measured since the one before; that it is lost is said once.
-    pub fn next_sample(&mut self) -> Result<(RawSample, Option<Result<RawField, Loss>>), Fault> {
+    /// Sleeps until the next burst has come in, or has failed and is bridged, and says when it was ready. Now and then
+    /// the magnetometer has measured since the one before; that it is lost is said once.
+    pub fn next_sample(
+        &mut self,
+    ) -> Result<(RawSample, Timing, Option<Result<RawField, Loss>>), Fault> {
         let sampled = loop {
             if let Some(sampled) = self.samples.dequeue() {
                 break sampled;
@@ -129,33 +125,29 @@ impl Imu {
             clock::sleep_unless(|| self.samples.ready());
         };
         let sample = match sampled.burst {
-            Ok(burst) => {
+            Ok(Some(burst)) => {
                 self.failures = 0;
                 RawSample::from_burst(&burst)
+            }
+            Ok(None) => {
+                self.failures = 0;
+                self.last.repeated()
             }
             Err(error) => {
                 self.failures += 1;
                 if self.failures > TOLERATED_FAILURES {
                     return Err(Fault::Lost(error));
                 }
-                RawSample {
-                    fresh: false,
-                    ..self.last
-                }
+                self.last.repeated()
             }
         };
         self.check(&sample)?;
         self.last = sample;
-        Ok((sample, sampled.field))
+        Ok((sample, sampled.timing, sampled.field))
     }
 
     fn check(&mut self, sample: &RawSample) -> Result<(), Fault> {
-        let repeats = *sample
-            == RawSample {
-                fresh: false,
-                ..self.last
-            };
-        self.repeats = if repeats { self.repeats + 1 } else { 0 };
+        self.repeats = if sample.fresh { 0 } else { self.repeats + 1 };
         if self.repeats > TOLERATED_REPEATS {
             return Err(Fault::Frozen);
         }

@@ -70,7 +70,7 @@ pub fn repeated(n: u32) -> Line {
     count("REPEATED", n)
 }
 
-/// `OVERRUNS: n`: samples missed since the start because the bus was still busy.
+/// `OVERRUNS: n`: samples lost since the start, the bus being in error or in use.
 pub fn overruns(n: u32) -> Line {
     count("OVERRUNS", n)
 }
