@@ -14,9 +14,9 @@ use crate::calibration::GyroBias;
 use crate::orientation::TimeConstant;
 use crate::sensor::{GyroRange, RawSample};
 use crate::units::Seconds;
-use nalgebra::UnitQuaternion;
 
 pub use super::gyro::Nanoseconds;
+pub use super::measurement::Force;
 
 /// What a person chooses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,7 +84,7 @@ impl<M: Multiply> Derived<M> {
 /// The complementary filter on quaternions, eq. 24, in integers.
 ///
 /// ```
-/// use vrduino::fixed::complementary::{Complementary, Nanoseconds, Parameters};
+/// use vrduino::fixed::complementary::{Complementary, Force, Nanoseconds, Parameters};
 /// use vrduino::orientation::DEFAULT_TIME_CONSTANT;
 /// use vrduino::sensor::{GyroRange, RawSample};
 ///
@@ -95,7 +95,7 @@ impl<M: Multiply> Derived<M> {
 /// });
 /// // A second of 90 °/s about the vertical, which is what 1475 counts come to.
 /// let sample = RawSample { gyro: [0, 1475, 0], accel: [0, 16384, 0], temperature: 0, fresh: true };
-/// filter.reset(sample.accel);
+/// filter.reset(Force::from_counts(sample.accel));
 /// for _ in 0..1000 {
 ///     filter.update(&sample);
 /// }
@@ -104,6 +104,7 @@ impl<M: Multiply> Derived<M> {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Complementary<M = Portable> {
+    gyro: GyroRange,
     derived: Derived<M>,
     bias: Bias,
     remainders: Remainders,
@@ -121,6 +122,7 @@ impl<M: Multiply> Complementary<M> {
     /// Starts from the identity and without a bias; products are taken by `M`.
     pub fn with(parameters: &Parameters) -> Self {
         Self {
+            gyro: parameters.gyro,
             derived: Derived::new(parameters),
             bias: Bias::ZERO,
             remainders: Remainders::START,
@@ -130,7 +132,14 @@ impl<M: Multiply> Complementary<M> {
 
     /// Goes on with other parameters.
     pub fn tune(&mut self, parameters: &Parameters) {
+        self.gyro = parameters.gyro;
         self.derived = Derived::new(parameters);
+    }
+
+    /// The time between two samples as it was measured, which is what the gyro turns for. The accelerometer's share
+    /// stays that of the nominal one.
+    pub fn set_sample_period(&mut self, period: Nanoseconds) {
+        self.derived.half_angle_per_count = half_angle_per_count(self.gyro, period);
     }
 
     /// What is taken off the gyro from now on.
@@ -144,9 +153,15 @@ impl<M: Multiply> Complementary<M> {
     /// A force of zero counts corrects nothing.
     #[inline(always)]
     pub fn update(&mut self, sample: &RawSample) {
-        let (tangent, h_squared) = self.half_angle(sample.gyro);
+        self.update_corrected(sample.gyro, Force::from_counts(sample.accel));
+    }
+
+    /// The same with the accelerometer corrected.
+    #[inline(always)]
+    pub fn update_corrected(&mut self, gyro: [i16; 3], force: Force) {
+        let (tangent, h_squared) = self.half_angle(gyro);
         let q_omega = self.orientation.turned_in_body(tangent);
-        let force = q_omega.in_world_times_square(sample.accel, length_squared(h_squared));
+        let force = q_omega.in_world_times_square(force.vector(), length_squared(h_squared));
         let Some((x, z)) = self.derived.near_level.little(force) else {
             self.orientation = q_omega;
             return self.level_anywhere(force.x, force.y, force.z);
@@ -200,29 +215,28 @@ impl<M: Multiply> Complementary<M> {
         self.orientation.upper().map(Q::bits)
     }
 
-    /// Goes on from this orientation, body to world. One that is not a number, or no unit quaternion, changes nothing.
-    pub fn set(&mut self, orientation: &UnitQuaternion<f32>) {
-        let q = orientation.quaternion();
-        if (q.norm_squared() - 1.0).abs() < 0.1 {
-            let of = |part: f32| Q::from_bits((part * (1 << 30) as f32) as i32);
-            self.orientation = Quaternion::from_upper([of(q.w), of(q.i), of(q.j), of(q.k)]);
-            self.normalise();
-        }
+    /// Goes on from this orientation, body to world, in units of 2⁻³⁰. False, and nothing changes, if its length is not
+    /// from ½ to 2.
+    pub fn set(&mut self, orientation: [i32; 4]) -> bool {
+        let q = Quaternion::from_upper(orientation.map(Q::from_bits));
+        let Some(q) = q.normalised_anywhere() else {
+            return false;
+        };
+        self.orientation = q;
+        true
     }
 
-    /// Starts again with no turn about the vertical and the tilt this force (counts, body frame) shows
-    /// (section 5.2); from the identity if it shows none.
-    pub fn reset(&mut self, accel: [i16; 3]) {
+    /// Starts again with no turn about the vertical and the tilt this force (body frame) shows (section 5.2); from the
+    /// identity if it shows none.
+    pub fn reset(&mut self, force: Force) {
         self.orientation = Quaternion::IDENTITY;
-        self.level(accel);
+        self.level(force);
     }
 
-    /// Takes the tilt this force (counts, body frame) shows at once and keeps yaw. One without direction changes
-    /// nothing.
-    pub fn level(&mut self, accel: [i16; 3]) {
-        let force = self
-            .orientation
-            .in_world_times_square(accel, const { Q::constant(1.0) });
+    /// Takes the tilt this force (body frame) shows at once and keeps yaw. One without direction changes nothing.
+    pub fn level(&mut self, force: Force) {
+        let one = const { Q::constant(1.0) };
+        let force = self.orientation.in_world_times_square(force.vector(), one);
         self.orientation = levelled(self.orientation, force, Share::WHOLE);
     }
 }

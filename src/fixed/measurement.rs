@@ -1,6 +1,9 @@
 //! What an estimator is told beside the gyro's counts, as three numbers of 15 fraction bits.
 
+use super::multiply::Multiply;
 use super::vector::Vector;
+use crate::sensor::AccelRange;
+use crate::units::{METRES_PER_S2_PER_G, SpecificForce};
 
 /// Half of what 32 bits hold: a vector of that size has room to turn.
 const LIMIT: i32 = 1 << 30;
@@ -17,7 +20,17 @@ impl Force {
     /// As the sensor reports it.
     #[inline(always)]
     pub fn from_counts(counts: [i16; 3]) -> Self {
-        Self(counts.map(|count| i32::from(count) << 15))
+        // Not by way of `map`, which is a loop in an image built for size.
+        let [x, y, z] = counts;
+        Self([i32::from(x) << 15, i32::from(y) << 15, i32::from(z) << 15])
+    }
+
+    /// From physical units, at the range the accelerometer was set to. Zero for what is not a number.
+    pub fn new(force: SpecificForce<f32>, range: AccelRange) -> Self {
+        let per_m_per_s2 = f64::from(1 << 30) / (range.max_g() * METRES_PER_S2_PER_G);
+        let m_per_s2: [f32; 3] = force.m_per_s2().into();
+        // A cast saturates.
+        Self::from_parts_of_counts(m_per_s2.map(|part| (part * per_m_per_s2 as f32) as i32))
     }
 
     /// In 2⁻¹⁵ counts; what is beyond the range of whole counts (±2¹⁵) is the end of it.
@@ -32,7 +45,7 @@ impl Force {
     }
 
     #[inline(always)]
-    pub(super) fn vector<M: super::multiply::Multiply>(self) -> Vector<M, 15> {
+    pub(super) fn vector<M: Multiply>(self) -> Vector<M, 15> {
         Vector::from_bits(self.0)
     }
 }
@@ -54,7 +67,7 @@ impl Field {
     }
 
     #[inline(always)]
-    pub(super) fn vector<M: super::multiply::Multiply>(self) -> Vector<M, 15> {
+    pub(super) fn vector<M: Multiply>(self) -> Vector<M, 15> {
         Vector::from_bits(self.0)
     }
 }

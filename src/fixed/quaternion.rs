@@ -117,14 +117,14 @@ impl<M: Multiply> Quaternion<M> {
         }
     }
 
-    /// q a q⁻¹ |q|²: a vector of the body as seen from the world. Counts and |q|² in; counts with 11 fraction
-    /// bits out.
+    /// q a q⁻¹ |q|²: a vector of the body as seen from the world. 15 fraction bits and |q|² in, 11
+    /// out. Half of what 32 bits hold goes in.
     ///
     /// |q|² a + 2 v × (v × a + w a) with the vector part v: what is in the brackets is no longer than a.
     #[inline(always)]
-    pub fn in_world_times_square(self, counts: [i16; 3], norm_squared: Q<M, 27>) -> Vector<M, 11> {
+    pub fn in_world_times_square(self, a: Vector<M, 15>, norm_squared: Q<M, 27>) -> Vector<M, 11> {
         let [w, x, y, z] = self.upper();
-        let a: Vector<M, 16> = Vector::from_counts(counts);
+        let a: Vector<M, 16> = a.finer();
         let inner: Vector<M, 14> = Vector {
             x: Q::product(w, a.x).plus(y, a.z).minus(z, a.y),
             y: Q::product(w, a.y).plus(z, a.x).minus(x, a.z),
