@@ -15,6 +15,7 @@ mod board;
 use core::convert::Infallible;
 
 use board::breadcrumb::{self, Stage};
+use board::multiply::Instructions;
 use board::{Board, Fault};
 use panic_halt as _; // a panic stops the core; the watchdog restarts it and the breadcrumb tells
 use vrduino::imu::RANGES;
@@ -26,7 +27,7 @@ const RETRY_MS: u32 = 1000;
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let mut board = Board::take();
-    let mut tracker = Tracker::new(RANGES);
+    let mut tracker = Tracker::<Instructions>::with(RANGES);
     if let Some(record) = board.load_calibration() {
         tracker.set_calibration(&record);
     }
@@ -40,7 +41,7 @@ fn main() -> ! {
 /// Tracks until the sensor is lost.
 ///
 /// One turn a millisecond; a turn that comes late finds its sample in a queue and catches up.
-fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> {
+fn track(board: &mut Board, tracker: &mut Tracker<Instructions>) -> Result<Infallible, Fault> {
     let adjustment = board.start_imu()?;
     tracker.set_magnetometer(adjustment);
     tracker.resume();

@@ -15,25 +15,26 @@ mod compass;
 mod estimators;
 mod show;
 mod stream;
+mod views;
 
 use crate::calibration::record::Record;
 use crate::calibration::{Reading, Rest, Stillness, Verdict};
 use crate::command::request::UseCompass;
 use crate::command::{Command, Mode};
-use crate::orientation::DEFAULT_TIME_CONSTANT;
-use crate::orientation::flatland::Flatland;
-use crate::orientation::gyro::DeadReckoning;
+use crate::fixed::fusion::{Field, Force, Nanoseconds};
+use crate::fixed::multiply::{Multiply, Portable};
 use crate::sampling::Timing;
 use crate::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use crate::sensor::{Ranges, RawSample, Sample};
-use crate::units::{MagneticField, Seconds, SpecificForce};
+use crate::units::Seconds;
 use crate::wire::frame::{Counts, Frame};
 use crate::wire::{self, Line};
 use calibration::Calibration;
 use compass::Compass;
 use estimators::Estimators;
-use nalgebra::UnitQuaternion;
+use nalgebra::{Quaternion, UnitQuaternion};
 use stream::Stream;
+use views::Views;
 
 /// The sensor's own rate with its filter in use, 1 kHz.
 pub const SAMPLE_PERIOD: Seconds<f32> = Seconds(0.001);
@@ -44,6 +45,9 @@ const SAMPLE_MICROS: u32 = 1000;
 /// Samples per line, if nobody asks for more or less: 100 lines a second. The course's Unity script reads
 /// 64 bytes per frame and falls behind by a second above about 128 lines a second.
 pub const LINE_EVERY: u16 = 10;
+
+/// Samples between two looks at the sensor's measured period.
+const PERIOD_EVERY: u32 = 64;
 
 /// Samples per INFO block: one second.
 const INFO_EVERY: u32 = 1000;
@@ -71,7 +75,7 @@ pub struct Health {
 
 /// Everything between the sensor's counts and the lines to the host.
 #[derive(Clone, Debug)]
-pub struct Tracker {
+pub struct Tracker<M = Portable> {
     ranges: Ranges,
     mode: Mode,
     stream: Stream,
@@ -80,18 +84,15 @@ pub struct Tracker {
     measurement: Option<Measurement>,
     /// Whether the orientation runs without a bias measured at rest.
     bias_unknown: bool,
-    estimators: Estimators,
-    gyro: DeadReckoning<f32>,
-    flat: Flatland<f32>,
+    estimators: Estimators<M>,
+    views: Views<M>,
     compass: Compass,
     use_compass: UseCompass,
     calibration: Calibration,
     phase: Phase,
     ticks: u32,
     counts: Tally,
-    timing: Timing,
-    /// The measured period over [`SAMPLE_PERIOD`]: a turn between two samples is that much larger.
-    stretch: f32,
+    timing: Option<Timing>,
 }
 
 /// Whether there is an orientation, and what the next sample is to do to it.
@@ -124,9 +125,16 @@ struct Tally {
     unclipped: u32,
 }
 
-impl Tracker {
-    /// For a sensor set to these ranges. Begins by measuring the bias.
+impl Tracker<Portable> {
+    /// For a sensor set to these ranges, in plain Rust. See [`with`](Self::with).
     pub fn new(ranges: Ranges) -> Self {
+        Self::with(ranges)
+    }
+}
+
+impl<M: Multiply> Tracker<M> {
+    /// For a sensor set to these ranges. Begins by measuring the bias. Products are taken by `M`.
+    pub fn with(ranges: Ranges) -> Self {
         Self {
             ranges,
             mode: Mode::default(),
@@ -134,27 +142,26 @@ impl Tracker {
             rest: None,
             measurement: Some(Measurement::new(ranges)),
             bias_unknown: false,
-            estimators: Estimators::default(),
-            gyro: DeadReckoning::new(SAMPLE_PERIOD),
-            flat: Flatland::new(DEFAULT_TIME_CONSTANT, SAMPLE_PERIOD),
+            estimators: Estimators::new(ranges),
+            views: Views::new(ranges),
             compass: Compass::none(),
             use_compass: UseCompass::default(),
-            calibration: Calibration::new(),
+            calibration: Calibration::new(ranges),
             phase: Phase::Starting,
             ticks: 0,
             counts: Tally::default(),
-            timing: Timing::default(),
-            stretch: 1.0,
+            timing: None,
         }
     }
 
     /// To be called before [`Tracker::update`] by those who know it: when the sample was ready, and how far apart
     /// samples are. Without, they are [`SAMPLE_PERIOD`] apart.
     pub fn timed(&mut self, timing: &Timing) {
-        if timing.period_ns != self.timing.period_ns {
-            self.stretch = timing.period_ns as f32 / (SAMPLE_PERIOD.0 * 1e9);
+        self.timing = Some(*timing);
+        if timing.locked && self.every(PERIOD_EVERY) {
+            let period = Nanoseconds(timing.period_ns);
+            self.estimators.set_sample_period(period);
         }
-        self.timing = *timing;
     }
 
     /// Takes a key, which has its effect with the next sample, or a line, which is answered at once.
@@ -224,7 +231,7 @@ impl Tracker {
 
     /// The fused orientation, body to world; the identity until there is one.
     pub fn orientation(&self) -> UnitQuaternion<f32> {
-        self.estimators.orientation()
+        unit(self.estimators.orientation())
     }
 
     /// One sample, with what the magnetometer has measured since the one before, if it has. `emit` is
@@ -249,7 +256,7 @@ impl Tracker {
         }
         let field = measured.result.and_then(Result::ok);
         let field = field.filter(|_| self.follows_compass());
-        let field = field.map(|field| self.calibration.field(field));
+        let field = field.map(|field| Field::new(self.calibration.field(field)));
         self.track(raw, field);
         self.measure(raw, emit);
         self.tell_of_bias(emit);
@@ -296,36 +303,43 @@ impl Tracker {
 
     /// The default mode runs the chosen estimator and nothing else.
     #[inline(never)] // a function of its own in the image, which the emulator times
-    fn track(&mut self, raw: &RawSample, field: Option<MagneticField<f32>>) {
+    fn track(&mut self, raw: &RawSample, field: Option<Field>) {
         match self.phase {
             Phase::Starting => return,
-            Phase::Running => self.estimators.update(&self.sample(raw), field),
-            Phase::Resetting => self.start(self.sample(raw).force),
+            Phase::Running => {
+                let force = self.force(raw);
+                self.estimators.update(raw.gyro, force, field);
+            }
+            Phase::Resetting => self.start(self.force(raw)),
             Phase::Releveling => {
-                let force = self.sample(raw).force;
-                self.estimators.level(force);
-                self.flat.reset(force);
+                self.estimators.level(self.force(raw));
+                self.views.restart(self.estimators.orientation());
                 self.phase = Phase::Running;
             }
         }
         match self.mode {
-            Mode::Flat => {
-                self.flat.update(&self.reading(raw));
-            }
+            Mode::Flat => self.views.update_flat(&self.reading(raw)),
             Mode::ThreeD => {
-                self.gyro.update(&self.reading(raw));
+                let (bias, period) = (self.estimators.bias(), self.estimators.sample_period());
+                self.views.update_gyro(raw.gyro, bias, period);
             }
             Mode::Info | Mode::Gyro | Mode::Accel | Mode::Quaternion => {}
         }
     }
 
+    /// The force corrected.
+    #[inline(always)]
+    fn force(&self, raw: &RawSample) -> Force {
+        self.calibration.force(raw.accel)
+    }
+
     /// In physical units, with the force corrected and the gyro's bias still in it.
-    pub(super) fn sample(&self, raw: &RawSample) -> Sample<f32> {
+    fn sample(&self, raw: &RawSample) -> Sample<f32> {
         self.calibration.sample(self.ranges.sample(raw))
     }
 
     /// The same without the bias that the estimator takes off.
-    pub(super) fn reading(&self, raw: &RawSample) -> Reading<f32> {
+    fn reading(&self, raw: &RawSample) -> Reading<f32> {
         self.estimators.bias().correct(self.sample(raw))
     }
 
@@ -334,18 +348,14 @@ impl Tracker {
     /// For `r` the course's firmware goes to the identity and leaves the rest to its filter, which
     /// is level again within a few samples. With a time constant of seconds the picture would lean
     /// for half a minute.
-    fn start(&mut self, force: SpecificForce<f32>) {
+    fn start(&mut self, force: Force) {
         self.estimators.reset(force);
-        self.flat.reset(force);
-        self.gyro.set(self.estimators.orientation());
+        self.restart_views();
         self.phase = Phase::Running;
     }
 
     fn restart_views(&mut self) {
-        let orientation = self.estimators.orientation();
-        self.gyro.set(orientation);
-        let up = orientation.inverse() * nalgebra::Vector3::y();
-        self.flat.reset(SpecificForce::from_g(up));
+        self.views.restart(self.estimators.orientation());
     }
 
     fn measure(&mut self, raw: &RawSample, emit: &mut impl FnMut(&Line)) {
@@ -364,7 +374,7 @@ impl Tracker {
                 self.bias_unknown = false;
                 self.rest = Some(rest);
                 if starting {
-                    self.start(rest.force);
+                    self.start(Force::new(rest.force, self.ranges.accel));
                 }
                 emit(&wire::bias_measured(rest.gyro_bias));
             }
@@ -372,7 +382,7 @@ impl Tracker {
                 if measurement.samples >= STILL_DEADLINE {
                     self.measurement = None;
                     if starting {
-                        self.start(self.sample(raw).force);
+                        self.start(self.force(raw));
                         emit(&wire::text(
                             "warning: not still for 5 s, gyro bias unknown: lay the board down for two seconds",
                         ));
@@ -407,4 +417,10 @@ impl Measurement {
             samples: 0,
         }
     }
+}
+
+/// In single precision, from units of 2⁻³⁰.
+fn unit(bits: [i32; 4]) -> UnitQuaternion<f32> {
+    let [w, x, y, z] = bits.map(|bits| bits as f32 / (1 << 30) as f32);
+    UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
 }

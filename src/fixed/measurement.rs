@@ -3,7 +3,7 @@
 use super::multiply::Multiply;
 use super::vector::Vector;
 use crate::sensor::AccelRange;
-use crate::units::{METRES_PER_S2_PER_G, SpecificForce};
+use crate::units::{METRES_PER_S2_PER_G, MagneticField, SpecificForce};
 
 /// Half of what 32 bits hold: a vector of that size has room to turn.
 const LIMIT: i32 = 1 << 30;
@@ -17,6 +17,9 @@ fn within_limit(parts: [i32; 3]) -> [i32; 3] {
 pub struct Force([i32; 3]);
 
 impl Force {
+    /// Free fall: it says nothing of which way is up.
+    pub const ZERO: Self = Self([0; 3]);
+
     /// As the sensor reports it.
     #[inline(always)]
     pub fn from_counts(counts: [i16; 3]) -> Self {
@@ -55,6 +58,13 @@ impl Force {
 pub struct Field([i32; 3]);
 
 impl Field {
+    /// From physical units. Zero for what is not a number.
+    pub fn new(field: MagneticField<f32>) -> Self {
+        let microtesla: [f32; 3] = field.microtesla().into();
+        // A cast saturates.
+        Self::from_parts_of_microtesla(microtesla.map(|part| (part * (1 << 15) as f32) as i32))
+    }
+
     /// In 2⁻¹⁵ µT; what is beyond ±2¹⁵ µT, seven times the sensor's range, is the end of that.
     #[inline(always)]
     pub fn from_parts_of_microtesla(parts: [i32; 3]) -> Self {

@@ -3,12 +3,14 @@
 use super::Tracker;
 use super::estimators::Estimators;
 use crate::command::request::{Choice, Format, Refusal, Request, Setting, UseCompass};
-use crate::fusion::{Fusion, Motion, Source};
+use crate::fixed::fusion::Fusion;
+use crate::fixed::multiply::Multiply;
+use crate::fusion::{Motion, Source};
 use crate::units::AngularRate;
 use crate::wire::provenance::Compass;
 use crate::wire::{self, Decimals, Line};
 
-impl Tracker {
+impl<M: Multiply> Tracker<M> {
     /// Does what a line asks for and says how it is now.
     pub(super) fn answer(&mut self, line: Result<Request, Refusal>) -> Line {
         let estimators = &mut self.estimators;
@@ -77,7 +79,7 @@ impl Tracker {
     }
 }
 
-impl Tracker {
+impl<M: Multiply> Tracker<M> {
     fn stream_state(&self) -> Line {
         let (format, every) = (self.stream.format().name(), self.stream.every());
         wire::text(format_args!("OK stream {format} every {every}"))
@@ -119,13 +121,13 @@ impl Tracker {
     }
 }
 
-fn value(estimators: &Estimators, setting: Setting) -> Line {
+fn value<M: Multiply>(estimators: &Estimators<M>, setting: Setting) -> Line {
     let name = setting.name();
     wire::answer(name, estimators.get(setting), setting.unit())
 }
 
 /// What the gyro reads at rest, and how that is known.
-fn bias(estimators: &Estimators) -> Line {
+fn bias<M: Multiply>(estimators: &Estimators<M>) -> Line {
     let rate = estimators.bias().rate();
     match estimators.choice() {
         Choice::Notes if estimators.bias_is_measured() => {
@@ -136,7 +138,7 @@ fn bias(estimators: &Estimators) -> Line {
     }
 }
 
-fn verdict(fusion: &Fusion<f32>, rate: AngularRate<f32>) -> Line {
+fn verdict<M: Multiply>(fusion: &Fusion<M>, rate: AngularRate<f32>) -> Line {
     let seconds = |samples: u32| samples / 1000;
     match (fusion.motion(), fusion.bias().source()) {
         (Motion::Still { samples }, _) => {

@@ -3,13 +3,14 @@
 use super::{Health, INFO_EVERY, SAMPLE_MICROS, Tracker};
 use crate::command::Mode;
 use crate::command::request::Choice;
+use crate::fixed::multiply::Multiply;
 use crate::fusion::{FieldVerdict, Motion};
 use crate::orientation::angles;
 use crate::wire::frame::{Counts, Frame};
 use crate::wire::provenance::Compass;
 use crate::wire::{self, Line, Q30, Status, Tag};
 
-impl Tracker {
+impl<M: Multiply> Tracker<M> {
     pub(super) fn show(
         &mut self,
         counts: &Counts,
@@ -27,9 +28,9 @@ impl Tracker {
         }
         match self.mode {
             Mode::Info => {}
-            Mode::Flat => emit(&wire::flat(&self.flat.roll())),
+            Mode::Flat => emit(&wire::flat(&self.views.roll())),
             Mode::ThreeD => {
-                let gyro = Q30::from(&self.gyro.orientation());
+                let gyro = Q30(self.views.gyro());
                 emit(&wire::quaternion(Tag::Gyro, gyro, self.stream.decimals()));
                 emit(&wire::angles(&angles::pitch_and_roll(
                     self.sample(&counts.sample).force,
@@ -42,14 +43,17 @@ impl Tracker {
         if !matches!(self.mode, Mode::ThreeD | Mode::Quaternion) {
             return None;
         }
-        let (q, status) = (Q30::from(&self.orientation()), self.status(counts));
+        let (q, status) = (Q30(self.estimators.orientation()), self.status(counts));
         self.stream.fused(q, self.micros(), status, counts, emit)
     }
 
-    /// Device time at which the sensor had the sample ready, in µs since the start: by the number of
-    /// samples, for the timer is the time base.
+    /// Device time at which the sensor had the sample ready, in µs since the start: where nobody says so, by the number
+    /// of samples.
     fn micros(&self) -> u32 {
-        self.ticks.wrapping_mul(SAMPLE_MICROS)
+        match self.timing {
+            Some(timing) => timing.micros as u32,
+            None => self.ticks.wrapping_mul(SAMPLE_MICROS),
+        }
     }
 
     fn status(&self, counts: &Counts) -> Status {
