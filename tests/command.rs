@@ -204,7 +204,7 @@ fn whatever_is_typed_is_a_command_or_nothing() {
     let mut answers = 0;
     for round in 0..2_000_000 {
         let index = (random.unit() * alphabet.len() as f64) as usize;
-        if round % 50 == 0 {
+        if round % 10 == 0 {
             // Or a zero would silence it for good.
             (0..20).for_each(|_| parser.idle());
         }
