@@ -17,7 +17,7 @@ mod show;
 mod stream;
 
 use crate::calibration::record::Record;
-use crate::calibration::{GyroBias, Reading, Rest, Stillness, Verdict};
+use crate::calibration::{Reading, Rest, Stillness, Verdict};
 use crate::command::request::UseCompass;
 use crate::command::{Command, Mode};
 use crate::orientation::DEFAULT_TIME_CONSTANT;
@@ -235,14 +235,13 @@ impl Tracker {
         let field = measured.result.and_then(Result::ok);
         let field = field.filter(|_| self.follows_compass());
         let field = field.map(|field| self.calibration.field(field));
-        let sample = self.calibration.sample(self.ranges.sample(raw));
-        let reading = self.track(sample, field);
-        self.measure(raw, sample.force, emit);
+        self.track(raw, field);
+        self.measure(raw, emit);
         self.tell_of_bias(emit);
         if self.phase == Phase::Starting {
             return None;
         }
-        self.show(&counts, &reading, health, emit)
+        self.show(&counts, health, emit)
     }
 
     fn count(&mut self, raw: &RawSample) {
@@ -280,31 +279,39 @@ impl Tracker {
         self.ticks.is_multiple_of(samples)
     }
 
-    /// The default mode runs the chosen estimator and nothing else. Returns the sample without the
-    /// bias that it takes off.
+    /// The default mode runs the chosen estimator and nothing else.
     #[inline(never)] // a function of its own in the image, which the emulator times
-    fn track(&mut self, sample: Sample<f32>, field: Option<MagneticField<f32>>) -> Reading<f32> {
+    fn track(&mut self, raw: &RawSample, field: Option<MagneticField<f32>>) {
         match self.phase {
-            Phase::Starting => return GyroBias::zero().correct(sample),
-            Phase::Running => self.estimators.update(&sample, field),
-            Phase::Resetting => self.start(sample.force),
+            Phase::Starting => return,
+            Phase::Running => self.estimators.update(&self.sample(raw), field),
+            Phase::Resetting => self.start(self.sample(raw).force),
             Phase::Releveling => {
-                self.estimators.level(sample.force);
-                self.flat.reset(sample.force);
+                let force = self.sample(raw).force;
+                self.estimators.level(force);
+                self.flat.reset(force);
                 self.phase = Phase::Running;
             }
         }
-        let reading = self.estimators.bias().correct(sample);
         match self.mode {
             Mode::Flat => {
-                self.flat.update(&reading);
+                self.flat.update(&self.reading(raw));
             }
             Mode::ThreeD => {
-                self.gyro.update(&reading);
+                self.gyro.update(&self.reading(raw));
             }
             Mode::Info | Mode::Gyro | Mode::Accel | Mode::Quaternion => {}
         }
-        reading
+    }
+
+    /// In physical units, with the force corrected and the gyro's bias still in it.
+    fn sample(&self, raw: &RawSample) -> Sample<f32> {
+        self.calibration.sample(self.ranges.sample(raw))
+    }
+
+    /// The same without the bias that the estimator takes off.
+    fn reading(&self, raw: &RawSample) -> Reading<f32> {
+        self.estimators.bias().correct(self.sample(raw))
     }
 
     /// Yaw 0, and the tilt that this force (body frame) shows.
@@ -326,12 +333,7 @@ impl Tracker {
         self.flat.reset(SpecificForce::from_g(up));
     }
 
-    fn measure(
-        &mut self,
-        raw: &RawSample,
-        force: SpecificForce<f32>,
-        emit: &mut impl FnMut(&Line),
-    ) {
+    fn measure(&mut self, raw: &RawSample, emit: &mut impl FnMut(&Line)) {
         let Some(measurement) = &mut self.measurement else {
             return;
         };
@@ -355,7 +357,7 @@ impl Tracker {
                 if measurement.samples >= STILL_DEADLINE {
                     self.measurement = None;
                     if starting {
-                        self.start(force);
+                        self.start(self.sample(raw).force);
                         emit(&wire::text(
                             "warning: not still for 5 s, gyro bias unknown: lay the board down for two seconds",
                         ));

@@ -14,12 +14,16 @@ pub const SAMPLES: u32 = 4000;
 
 /// What the gyro of the motions reads at rest, in 2⁻¹⁵ counts.
 const BIAS: [i32; 3] = [1_234_567, -765_432, 98_765];
+/// The same in counts.
+const BIAS_COUNTS: [i16; 3] = [38, -23, 3];
 
 /// A motion, and how it is filtered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
     /// A level board that turns about the vertical at up to 300 °/s, with noise: within 45° of level.
     Level,
+    /// A board at rest under forces from everywhere up to 44° from the vertical.
+    Tilted,
     /// Anything the registers can hold, each end and zero more often than by chance.
     Anything,
     /// The same with a time constant of no time at all, α = 0.
@@ -28,7 +32,12 @@ pub enum Motion {
 
 impl Motion {
     /// Every one.
-    pub const ALL: [Self; 3] = [Self::Level, Self::Anything, Self::AnythingAtOnce];
+    pub const ALL: [Self; 4] = [
+        Self::Level,
+        Self::Tilted,
+        Self::Anything,
+        Self::AnythingAtOnce,
+    ];
 
     /// The filter at its start, at ±2000 °/s and 1 kHz.
     pub fn filter<M: Multiply>(self) -> Complementary<M> {
@@ -36,7 +45,7 @@ impl Motion {
             gyro: GyroRange::Dps2000,
             sample_period: Nanoseconds(1_000_000),
             time_constant: match self {
-                Self::Level | Self::Anything => DEFAULT_TIME_CONSTANT,
+                Self::Level | Self::Tilted | Self::Anything => DEFAULT_TIME_CONSTANT,
                 Self::AnythingAtOnce => TimeConstant::new(Seconds(0.0)),
             },
         });
@@ -51,9 +60,15 @@ impl Motion {
                 // There and back, at 1.25 Hz.
                 let phase = (number % 800) as i16;
                 let turn = (phase - 400).abs() * 24 - 4800;
-                let gyro = [0, turn, 0].map(|counts| counts + random.noise(8));
-                (gyro, [0, 16384, 0].map(|counts| counts + random.noise(300)))
+                (
+                    [0, turn, 0].map(|counts| counts + random.noise(8)),
+                    [0, 16384, 0].map(|counts| counts + random.noise(300)),
+                )
             }
+            Self::Tilted => (
+                BIAS_COUNTS.map(|counts| counts + random.noise(8)),
+                [random.noise(11_000), 16_384, random.noise(11_000)],
+            ),
             Self::Anything | Self::AnythingAtOnce => (
                 [(); 3].map(|()| random.counts()),
                 [(); 3].map(|()| random.counts()),
@@ -86,9 +101,10 @@ impl Random {
         self.0
     }
 
-    /// From −`size` to `size`.
+    /// From −`size` to just below `size`.
     fn noise(&mut self, size: i16) -> i16 {
-        ((self.next() >> 16) as i16) / (i16::MAX / size)
+        let bits = (self.next() as i32) >> 16;
+        ((bits * i32::from(size)) >> 15) as i16
     }
 
     fn counts(&mut self) -> i16 {

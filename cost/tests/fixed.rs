@@ -13,8 +13,8 @@ use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::turns::Turns;
 use vrduino_emulator::time::MILLISECOND;
 
-/// Instructions of a whole update, bias and parameters included, near level: always the same number.
-const NEAR_LEVEL: u64 = 245;
+/// Instructions of a whole update, bias and parameters included, up to 45° from level: always the same number.
+const NEAR_LEVEL: u64 = 200;
 /// Most that any input may cost.
 const WORST: u64 = 1_000;
 
@@ -50,15 +50,15 @@ fn at_the_end(function: &str) -> Board {
 
 #[test]
 fn near_level_every_update_costs_the_same() {
-    // Well before the next motion begins.
+    // Well before anything comes: level first, then tilted.
     let image = Image::open(path()).expect("the emulator accepts the image");
     let mut setup = Setup::new(Box::new(Turns::new(1e6, 0.0)));
     setup.timed_function = "by_instructions".to_owned();
     let mut board = Board::new(image, setup);
-    while board.measure().calls.count < u64::from(SAMPLES) / 2 {
+    while board.measure().calls.count < u64::from(SAMPLES) * 3 / 2 {
         board.run(MILLISECOND);
         assert!(board.stop().is_none(), "{}", board.stop().unwrap());
-        assert_eq!(board.variable("DONE"), Some(0));
+        assert!(board.variable("DONE").is_some_and(|done| done < 2));
     }
     let calls = board.measure().calls;
     println!("{} instructions near level", calls.most_instructions);
@@ -85,7 +85,7 @@ fn board_and_host_compute_the_same_bits() {
     assert_eq!(board.variable("DIFFERENT"), Some(0));
     let address = board.image().address_of("ORIENTATIONS").unwrap();
     let words: Vec<i32> = board
-        .peek(address, 48)
+        .peek(address, 16 * Motion::ALL.len())
         .chunks_exact(4)
         .map(|word| i32::from_le_bytes(word.try_into().unwrap()))
         .collect();

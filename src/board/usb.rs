@@ -41,7 +41,7 @@ const PRIORITY: u8 = 0x80;
 /// A line or a frame.
 type Whole = Vec<u8, LINE_LEN>;
 
-static PORT: Mutex<RefCell<Option<Port>>> = Mutex::new(RefCell::new(None));
+static PORT: Mutex<RefCell<Option<&'static mut Port>>> = Mutex::new(RefCell::new(None));
 /// Under a name that survives optimisation, so that the emulator can report it.
 // SAFETY: no other item has this name.
 #[unsafe(export_name = "vrduino_dropped_lines")]
@@ -82,6 +82,7 @@ impl Usb {
             current: None,
             open: false,
         };
+        let port = cortex_m::singleton!(: Port = port).expect("the board is taken once");
         critical_section::with(|cs| PORT.replace(cs, Some(port)));
         super::enable_interrupt(Interrupt::USB0, PRIORITY);
         Usb {
@@ -202,9 +203,9 @@ impl Port {
 
 #[cortex_m_rt::interrupt]
 fn USB0() {
-    static mut SERVED: Option<Port> = None;
+    static mut SERVED: Option<&'static mut Port> = None;
     breadcrumb::during(Stage::UsbInterrupt, || {
-        // Moved here at the first interrupt, so that serving it needs no critical section and sampling
+        // Taken here at the first interrupt, so that serving it needs no critical section and sampling
         // is never held up.
         if SERVED.is_none() {
             *SERVED = critical_section::with(|cs| PORT.take(cs));

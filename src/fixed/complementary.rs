@@ -3,8 +3,8 @@
 //! What it computes is [`orientation::complementary`](crate::orientation::complementary), which is the one to read
 //! first; here every step is put the way that costs least.
 
-use super::half_angle::{tangent_excess, tangent_squared};
-use super::inclination::{HalfAnglePerTangent, Share, anywhere, near_level};
+use super::half_angle::{length_squared, tangent_excess};
+use super::inclination::{NearLevel, Share, anywhere};
 use super::multiply::{Multiply, Portable};
 use super::number::{Q, Wide};
 use super::quaternion::Quaternion;
@@ -13,6 +13,7 @@ use crate::calibration::GyroBias;
 use crate::orientation::TimeConstant;
 use crate::sensor::{GyroRange, RawSample};
 use crate::units::{RADIANS_PER_DEGREE, Seconds};
+use nalgebra::UnitQuaternion;
 
 /// The time from one sample to the next in nanoseconds.
 ///
@@ -26,7 +27,7 @@ pub struct Nanoseconds(pub u32);
 pub struct Parameters {
     /// What the gyro was set to.
     pub gyro: GyroRange,
-    /// At most 7.1 ms at ±2000 °/s and in proportion more at the others, 57 ms at ±250 °/s: a longer one is
+    /// At most 6.7 ms at ±2000 °/s and in proportion more at the others, 53 ms at ±250 °/s: a longer one is
     /// taken for that.
     pub sample_period: Nanoseconds,
     /// τ, or α by way of [`TimeConstant::from_gyro_weight`].
@@ -63,12 +64,14 @@ impl Bias {
 struct Derived<M> {
     /// Half the angle of one sample, in radians per count.
     half_angle_per_count: Q<M, 49>,
+    near_level: NearLevel<M>,
     share: Share,
-    /// Of a little share only.
-    half_angle_per_tangent: Option<HalfAnglePerTangent<M>>,
 }
 
 impl<M: Multiply> Derived<M> {
+    /// A sixteenth less than what fits, for what a tangent is longer than its angle.
+    const LONGEST: u64 = 15 << 27;
+
     fn new(parameters: &Parameters) -> Self {
         let Parameters {
             gyro,
@@ -81,12 +84,9 @@ impl<M: Multiply> Derived<M> {
             time_constant.accelerometer_weight(Seconds(nanoseconds as f32 * 1e-9)),
         );
         Self {
-            half_angle_per_count: Q::from_bits(half_angle.min(i32::MAX as u64) as i32),
+            half_angle_per_count: Q::from_bits(half_angle.min(Self::LONGEST) as i32),
+            near_level: NearLevel::new(share),
             share,
-            half_angle_per_tangent: match share {
-                Share::Little(share) => Some(HalfAnglePerTangent::new(share)),
-                Share::Much(_) => None,
-            },
         }
     }
 }
@@ -172,69 +172,72 @@ impl<M: Multiply> Complementary<M> {
     /// A force of zero counts corrects nothing.
     #[inline(always)]
     pub fn update(&mut self, sample: &RawSample) {
-        let h = self.half_angle(sample.gyro);
-        if let Some(orientation) = self.near_level(h, sample.accel) {
-            self.orientation = orientation;
-        } else {
-            self.update_anywhere(sample);
-        }
+        let (tangent, h_squared) = self.half_angle(sample.gyro);
+        let q_omega = self.orientation.turned_in_body(tangent);
+        let force = q_omega.in_world(sample.accel, length_squared(h_squared));
+        let Some((x, z)) = self.derived.near_level.little(force) else {
+            self.orientation = q_omega;
+            return self.level_anywhere(force.x, force.y, force.z);
+        };
+        let q = q_omega.levelled_a_little(x, z);
+        let Some(q) = q.normalised_nearby() else {
+            self.orientation = q;
+            return self.normalise();
+        };
+        self.orientation = q;
     }
 
-    /// q_ω, and the force as it sees it.
-    #[inline(always)]
-    fn turned(&self, h: Vector<M, 32>, accel: [i16; 3]) -> (Quaternion<M>, Vector<M, 12>) {
-        let h_squared = h.norm_squared();
-        let excess = tangent_excess(h_squared);
-        let q_omega = self.orientation.turned_in_body(h.grown(excess));
-        let force = q_omega.in_world(accel, tangent_squared(h_squared, excess));
-        (q_omega, force)
-    }
-
-    /// The sample as it nearly always is: a tilt error of at most 45°, α above 7/8, and a turn of a few degrees.
-    #[inline(always)]
-    fn near_level(&self, h: Vector<M, 32>, accel: [i16; 3]) -> Option<Quaternion<M>> {
-        let half_angle_per_tangent = self.derived.half_angle_per_tangent.as_ref()?;
-        let (q_omega, force) = self.turned(h, accel);
-        let (x, z) = near_level(force, half_angle_per_tangent)?;
-        q_omega.levelled_a_little(x, z).normalised_nearby()
-    }
-
-    /// Any sample, whose remainders are there already. From the start again: to put away what it has found would
-    /// cost the common path its time.
+    /// By the share of any tilt. The force is in the world, and in registers: a common path that keeps it in
+    /// memory for this one is longer.
     #[cold]
     #[inline(never)]
-    fn update_anywhere(&mut self, sample: &RawSample) {
-        let rates = self.rates(sample.gyro);
-        for (rest, rate) in self.remainders.iter_mut().zip(rates) {
-            let angle = Wide::<M, 64>::from_bits(0).plus(rate, self.derived.half_angle_per_count);
-            *rest = rest.wrapping_sub(angle.lower());
-        }
-        let h = self.half_angle(sample.gyro);
-        let (q_omega, force) = self.turned(h, sample.accel);
-        self.orientation = levelled(q_omega, force, self.derived.share);
+    fn level_anywhere(&mut self, x: Q<M, 11>, y: Q<M, 11>, z: Q<M, 11>) {
+        self.level_by(self.derived.share, Vector::new(x, y, z));
     }
 
-    /// In counts, with the bias off.
+    /// By a share of any tilt.
+    #[inline]
+    fn level_by(&mut self, share: Share, force: Vector<M, 11>) {
+        let q = self.orientation;
+        self.orientation = match (anywhere(force), share) {
+            (None, _) => q,
+            (Some(tilt), Share::Little(share)) => {
+                let (x, z) = tilt.little(Q::from_bits(share));
+                q.levelled_a_little(x, z)
+            }
+            (Some(tilt), Share::Much(share)) => q.levelled(tilt.much(share)),
+        };
+        self.normalise();
+    }
+
+    /// To unit length, also after a turn by many degrees.
+    #[cold]
+    #[inline(never)]
+    fn normalise(&mut self) {
+        self.orientation = self.orientation.normalised();
+    }
+
+    /// n tan(φ/2) of eq. 17, with the bias off, and (φ/2)². What is rounded off is carried over to the next
+    /// sample: in an even turn it would be the same again and again.
     #[inline(always)]
-    fn rates(&self, gyro: [i16; 3]) -> [Q<M, 15>; 3] {
+    fn half_angle(&mut self, gyro: [i16; 3]) -> (Vector<M, 32>, Q<M, 32>) {
         let [x, y, z] = gyro;
         let Bias([bias_x, bias_y, bias_z]) = self.bias;
         let rate = |count: i16, bias: i32| Q::from_bits((i32::from(count) << 15) - bias);
-        [rate(x, bias_x), rate(y, bias_y), rate(z, bias_z)]
-    }
-
-    /// n φ/2 of eq. 17, with the bias off. What is rounded off is carried over to the next sample.
-    #[inline(always)]
-    fn half_angle(&mut self, gyro: [i16; 3]) -> Vector<M, 32> {
-        let [x, y, z] = self.rates(gyro);
+        let rate: Vector<M, 15> = Vector::new(rate(x, bias_x), rate(y, bias_y), rate(z, bias_z));
+        let per_count = self.derived.half_angle_per_count;
+        let h: Vector<M, 32> = rate.times(per_count);
+        let h_squared = h.norm_squared();
+        let tangent_per_count = per_count.plus(per_count, tangent_excess(h_squared));
         let [rest_x, rest_y, rest_z] = &mut self.remainders;
         let of = |rate: Q<M, 15>, rest: &mut u32| {
-            let angle = Wide::<M, 64>::from_bits(i64::from(*rest))
-                .plus(rate, self.derived.half_angle_per_count);
-            *rest = angle.lower();
-            angle.upper()
+            let rest_and = Wide::<M, 64>::from_bits(i64::from(*rest));
+            let tangent = rest_and.plus(rate, tangent_per_count);
+            *rest = tangent.lower();
+            tangent.upper()
         };
-        Vector::new(of(x, rest_x), of(y, rest_y), of(z, rest_z))
+        let tangent = Vector::new(of(rate.x, rest_x), of(rate.y, rest_y), of(rate.z, rest_z));
+        (tangent, h_squared)
     }
 
     /// w, x, y, z of the orientation as of the last sample, body to world.
@@ -247,6 +250,16 @@ impl<M: Multiply> Complementary<M> {
         self.orientation.upper().map(Q::bits)
     }
 
+    /// Goes on from this orientation, body to world. One that is not a number, or no unit quaternion, changes nothing.
+    pub fn set(&mut self, orientation: &UnitQuaternion<f32>) {
+        let q = orientation.quaternion();
+        if (q.norm_squared() - 1.0).abs() < 0.1 {
+            let of = |part: f32| Q::from_bits((part * (1 << 30) as f32) as i32);
+            self.orientation = Quaternion::from_upper([of(q.w), of(q.i), of(q.j), of(q.k)]);
+            self.normalise();
+        }
+    }
+
     /// Starts again with no turn about the vertical and the tilt this force (counts, body frame) shows
     /// (section 5.2); from the identity if it shows none.
     pub fn reset(&mut self, accel: [i16; 3]) {
@@ -257,21 +270,7 @@ impl<M: Multiply> Complementary<M> {
     /// Takes the tilt this force (counts, body frame) shows at once and keeps yaw. One without direction changes
     /// nothing.
     pub fn level(&mut self, accel: [i16; 3]) {
-        let force = self.orientation.in_world(accel, Q::ZERO);
-        self.orientation = levelled(self.orientation, force, Share::WHOLE);
+        let force = self.orientation.in_world(accel, const { Q::constant(1.0) });
+        self.level_by(Share::WHOLE, force);
     }
-}
-
-/// By a share of any tilt, and normalised.
-#[inline]
-fn levelled<M: Multiply>(q: Quaternion<M>, force: Vector<M, 12>, share: Share) -> Quaternion<M> {
-    let levelled = match (anywhere(force), share) {
-        (None, _) => q,
-        (Some(tilt), Share::Little(share)) => {
-            let (x, z) = tilt.little(Q::from_bits(share));
-            q.levelled_a_little(x, z)
-        }
-        (Some(tilt), Share::Much(share)) => q.levelled(tilt.much(share)),
-    };
-    levelled.normalised()
 }

@@ -8,6 +8,9 @@ use super::number::{Q, Wide};
 use super::vector::Vector;
 
 /// w, x, y, z.
+///
+/// The parts of a sum stand in the order in which fewest values wait: with one instruction for each product, the
+/// compiler keeps it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quaternion<M> {
     w: Wide<M, 62>,
@@ -37,10 +40,22 @@ impl<M: Multiply> Quaternion<M> {
         z: Wide::from_bits(0),
     };
 
+    /// From w, x, y and z.
+    #[inline]
+    pub fn from_upper(upper: [Q<M, 30>; 4]) -> Self {
+        let [w, x, y, z] = upper.map(|q| Wide::from_bits(i64::from(q.bits()) << 32));
+        Self { w, x, y, z }
+    }
+
     /// w, x, y and z, rounded down.
     #[inline(always)]
     pub fn upper(self) -> [Q<M, 30>; 4] {
-        [self.w, self.x, self.y, self.z].map(Wide::upper)
+        [
+            self.w.upper(),
+            self.x.upper(),
+            self.y.upper(),
+            self.z.upper(),
+        ]
     }
 
     /// q (1, t): a turn in the body's own axes; √(1 + t²) times as long.
@@ -48,10 +63,10 @@ impl<M: Multiply> Quaternion<M> {
     pub fn turned_in_body(self, t: Vector<M, 32>) -> Self {
         let [w, x, y, z] = self.upper();
         Self {
-            w: self.w.plus(x, -t.x).plus(y, -t.y).plus(z, -t.z),
-            x: self.x.plus(w, t.x).plus(y, t.z).plus(z, -t.y),
-            y: self.y.plus(w, t.y).plus(z, t.x).plus(x, -t.z),
             z: self.z.plus(w, t.z).plus(x, t.y).plus(y, -t.x),
+            y: self.y.plus(w, t.y).plus(z, t.x).plus(x, -t.z),
+            x: self.x.plus(w, t.x).plus(y, t.z).plus(z, -t.y),
+            w: self.w.plus(x, -t.x).plus(y, -t.y).plus(z, -t.z),
         }
     }
 
@@ -61,8 +76,8 @@ impl<M: Multiply> Quaternion<M> {
         let [w, x, y, z] = self.upper();
         Self {
             w: self.w.plus(x, t_z).plus(z, -t_x),
-            x: self.x.plus(w, -t_z).plus(y, -t_x),
             y: self.y.plus(x, t_x).plus(z, t_z),
+            x: self.x.plus(w, -t_z).plus(y, -t_x),
             z: self.z.plus(w, t_x).plus(y, -t_z),
         }
     }
@@ -87,28 +102,25 @@ impl<M: Multiply> Quaternion<M> {
         }
     }
 
-    /// q a q⁻¹ |q|²: a vector of the body as seen from the world. Counts in, with 15 fraction bits, and
-    /// |q|² − 1; counts out, with 12.
+    /// q a q⁻¹ |q|²: a vector of the body as seen from the world. Counts and |q|² in; counts with 11 fraction
+    /// bits out.
     ///
-    /// |q|² a + 2 v × (v × a + w a) with the vector part v: what is in the brackets is no longer than a,
-    /// and the 2 is in the formats.
+    /// |q|² a + 2 v × (v × a + w a) with the vector part v: what is in the brackets is no longer than a.
     #[inline(always)]
-    pub fn in_world(self, counts: [i16; 3], excess: Q<M, 32>) -> Vector<M, 12> {
+    pub fn in_world(self, counts: [i16; 3], norm_squared: Q<M, 27>) -> Vector<M, 11> {
         let [w, x, y, z] = self.upper();
-        let a: Vector<M, 15> = Vector::from_counts(counts);
-        let inner: Vector<M, 15> = Vector::<M, 13>::new(
-            Q::product(w, a.x).plus(y, a.z).minus(z, a.y),
-            Q::product(w, a.y).plus(z, a.x).minus(x, a.z),
-            Q::product(w, a.z).plus(x, a.y).minus(y, a.x),
-        )
-        .finer();
-        let outer = Vector::<M, 12>::from_counts(counts).grown(excess);
-        // A product has 13 fraction bits; read with 12 it is twice as large.
-        let twice = |q: Q<M, 30>| Q::<M, 29>::from_bits(q.bits());
+        let a: Vector<M, 16> = Vector::from_counts(counts);
+        let inner: Vector<M, 14> = Vector {
+            x: Q::product(w, a.x).plus(y, a.z).minus(z, a.y),
+            y: Q::product(w, a.y).plus(z, a.x).minus(x, a.z),
+            z: Q::product(w, a.z).plus(x, a.y).minus(y, a.x),
+        };
+        let outer: Vector<M, 11> = a.times(norm_squared);
+        let (x, y, z): (Q<M, 29>, Q<M, 29>, Q<M, 29>) = (x.twice(), y.twice(), z.twice());
         Vector {
-            x: outer.x.plus(twice(y), inner.z).minus(twice(z), inner.y),
-            y: outer.y.plus(twice(z), inner.x).minus(twice(x), inner.z),
-            z: outer.z.plus(twice(x), inner.y).minus(twice(y), inner.x),
+            x: outer.x.plus(y, inner.z).minus(z, inner.y),
+            z: outer.z.plus(x, inner.y).minus(y, inner.x),
+            y: outer.y.plus(z, inner.x).minus(x, inner.z),
         }
     }
 
@@ -121,17 +133,23 @@ impl<M: Multiply> Quaternion<M> {
         excess.plus(w, w).plus(x, x).plus(y, y).plus(z, z).upper()
     }
 
-    /// q / |q|, within 5e-9 of unit length, if |q|² is within 1/128 of 1.
+    /// q / |q|, within 7e-9 of unit length, if |q|² is from 1/1024 below 1 to 1/512 above.
     #[inline(always)]
     pub fn normalised_nearby(self) -> Option<Self> {
         let excess = self.excess();
-        let small = const { Q::<M, 28>::constant(1.0 / 128.0).bits() };
-        (-small..small)
-            .contains(&excess.bits())
-            .then(|| self.shortened(excess.finer()))
+        let (least, most) = const {
+            let thousandth = Q::<M, 28>::constant(1.0 / 1024.0).bits();
+            (-thousandth, 2 * thousandth)
+        };
+        (least..most).contains(&excess.bits()).then(|| {
+            // (1 + e)^−½ − 1 = −e/2 + 3e²/8 − …: the next term is below 2.4e-9.
+            let e: Q<M, 33> = excess.finer();
+            let (half, next) = const { (Q::<M, 31>::constant(-0.5), Q::<M, 30>::constant(0.375)) };
+            self.grown(Q::product(e, half.plus(e, next)))
+        })
     }
 
-    /// The same for |q|² from ¾ to below 1¼: what is left of a quarter is 1e-3, then 1e-13.
+    /// q / |q| for |q|² from ¾ to below 1¼: what is left of a quarter is 1e-3, then 1e-13.
     #[inline]
     pub fn normalised(self) -> Self {
         let nearly = self.shortened(self.excess().finer());
@@ -144,7 +162,12 @@ impl<M: Multiply> Quaternion<M> {
         let inner = const { Q::<M, 30>::constant(3.0 / 8.0) }
             .minus(e, const { Q::<M, 29>::constant(5.0 / 16.0) });
         let series = const { Q::<M, 31>::constant(-0.5) }.plus(e, inner);
-        let share: Q<M, 32> = Q::product(e, series);
+        self.grown(Q::product(e, series))
+    }
+
+    /// This and as much more of itself as `share` says.
+    #[inline(always)]
+    fn grown(self, share: Q<M, 32>) -> Self {
         let [w, x, y, z] = self.upper();
         Self {
             w: self.w.plus(w, share),

@@ -1,7 +1,6 @@
 //! What of the tracker a host sees.
 
 use super::{Health, INFO_EVERY, SAMPLE_MICROS, Tracker};
-use crate::calibration::Reading;
 use crate::command::Mode;
 use crate::command::request::Choice;
 use crate::fusion::{FieldVerdict, Motion};
@@ -14,10 +13,10 @@ impl Tracker {
     pub(super) fn show(
         &mut self,
         counts: &Counts,
-        reading: &Reading<f32>,
         health: &Health,
         emit: &mut impl FnMut(&Line),
     ) -> Option<Frame> {
+        let raw = &counts.sample;
         if self.mode == Mode::Info {
             if self.every(INFO_EVERY) {
                 self.show_info(health, emit);
@@ -33,10 +32,11 @@ impl Tracker {
             Mode::ThreeD => {
                 let gyro = Q30::from(&self.gyro.orientation());
                 emit(&wire::quaternion(Tag::Gyro, gyro, self.stream.decimals()));
-                emit(&wire::angles(&angles::pitch_and_roll(reading.force())));
+                let force = self.sample(raw).force;
+                emit(&wire::angles(&angles::pitch_and_roll(force)));
             }
-            Mode::Gyro => emit(&wire::gyro(reading.rate())),
-            Mode::Accel => emit(&wire::force(reading.force())),
+            Mode::Gyro => emit(&wire::gyro(self.reading(raw).rate())),
+            Mode::Accel => emit(&wire::force(self.sample(raw).force)),
             Mode::Quaternion => {}
         }
         if !matches!(self.mode, Mode::ThreeD | Mode::Quaternion) {

@@ -20,7 +20,7 @@ use vrduino_cost::{Motion, Random, SAMPLES};
 
 /// w, x, y, z at the end of each motion, as the bits of Q30.
 #[unsafe(no_mangle)]
-static ORIENTATIONS: [AtomicU32; 12] = [const { AtomicU32::new(0) }; 12];
+static ORIENTATIONS: [AtomicU32; 16] = [const { AtomicU32::new(0) }; 16];
 
 /// Samples after which the two were not the same.
 #[unsafe(no_mangle)]
