@@ -23,3 +23,6 @@ mod magnetometer;
 
 #[path = "boot/store.rs"]
 mod store;
+
+#[path = "boot/streams.rs"]
+mod streams;

@@ -6,7 +6,7 @@ mod random;
 use random::Random;
 use vrduino::command::request::{Choice, Format, Request, Setting, UseCompass};
 use vrduino::command::{Command, Mode, Parser};
-use vrduino::wire::{Decimals, LINE_LEN};
+use vrduino::wire::{Decimals, LINE_LEN, Provenance, Q30, frame};
 
 #[test]
 fn keys_are_single_bytes_and_others_mean_nothing() {
@@ -202,8 +202,12 @@ fn whatever_is_typed_is_a_command_or_nothing() {
     let mut parser = Parser::new();
     let alphabet = b":setlad .0129-\n\r\xFF\0br";
     let mut answers = 0;
-    for _ in 0..2_000_000 {
+    for round in 0..2_000_000 {
         let index = (random.unit() * alphabet.len() as f64) as usize;
+        if round % 10 == 0 {
+            // Or a zero would silence it for good.
+            (0..20).for_each(|_| parser.idle());
+        }
         if let Some(Command::Line(Err(refusal))) = parser.push(alphabet[index]) {
             assert!(refusal.to_string().len() < LINE_LEN - 4);
             answers += 1;
@@ -237,4 +241,35 @@ fn an_echo_of_the_stream_presses_no_keys_and_a_mistyped_key_is_soon_forgotten() 
         parser.idle();
     }
     assert_eq!(parser.push(b'2'), Some(Command::Mode(Mode::ThreeD)));
+}
+
+#[test]
+fn an_echo_of_frames_presses_no_keys() {
+    let mut random = Random(3);
+    let mut byte = || (random.unit() * 256.0) as u8;
+    for cooked in [false, true] {
+        let mut parser = Parser::new();
+        assert_eq!(parser.push(b'2'), Some(Command::Mode(Mode::ThreeD)));
+        for _ in 0..100_000 {
+            let q = Q30([(); 4].map(|()| i32::from_le_bytes([(); 4].map(|()| byte()))));
+            let frame = frame::orientation(q, Provenance::default());
+            let line = b"OK stream binary every 1\n".as_slice();
+            for &byte in frame.iter().chain(line) {
+                // As a terminal in its default state shows what is no letter.
+                let shown = match byte {
+                    b'\r' if cooked => vec![b'\n'],
+                    0..32 if cooked && byte != b'\n' => vec![b'^', byte + 64],
+                    127 if cooked => b"^?".to_vec(),
+                    other => vec![other],
+                };
+                for byte in shown {
+                    assert_eq!(parser.push(byte), None);
+                }
+            }
+            (0..5).for_each(|_| parser.idle());
+        }
+        // It ends when the echo does.
+        (0..20).for_each(|_| parser.idle());
+        assert_eq!(parser.push(b'2'), Some(Command::Mode(Mode::ThreeD)));
+    }
 }

@@ -17,6 +17,7 @@ impl<M: Multiply> Tracker<M> {
         health: &Health,
         emit: &mut impl FnMut(&Line),
     ) -> Option<Frame> {
+        let raw = &counts.sample;
         if self.mode == Mode::Info {
             if self.every(INFO_EVERY) {
                 self.show_info(health, emit);
@@ -32,12 +33,11 @@ impl<M: Multiply> Tracker<M> {
             Mode::ThreeD => {
                 let gyro = Q30(self.views.gyro());
                 emit(&wire::quaternion(Tag::Gyro, gyro, self.stream.decimals()));
-                emit(&wire::angles(&angles::pitch_and_roll(
-                    self.sample(&counts.sample).force,
-                )));
+                let force = self.sample(raw).force;
+                emit(&wire::angles(&angles::pitch_and_roll(force)));
             }
-            Mode::Gyro => emit(&wire::gyro(self.reading(&counts.sample).rate())),
-            Mode::Accel => emit(&wire::force(self.sample(&counts.sample).force)),
+            Mode::Gyro => emit(&wire::gyro(self.reading(raw).rate())),
+            Mode::Accel => emit(&wire::force(self.sample(raw).force)),
             Mode::Quaternion => {}
         }
         if !matches!(self.mode, Mode::ThreeD | Mode::Quaternion) {

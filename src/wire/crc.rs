@@ -1,6 +1,6 @@
 //! CRC-16/IBM-3740, also called CCITT-FALSE: polynomial 0x1021, from 0xFFFF, most significant bit first,
-//! nothing inverted. In what is as short as a line or a frame it finds any three wrong bits, any
-//! burst of up to sixteen, and all but one in 65536 of everything else.
+//! nothing inverted. In a message as short as ours it finds any three wrong bits, any burst of up to
+//! sixteen, and all but one in 65536 of everything else.
 
 /// Of these bytes.
 ///

@@ -47,7 +47,7 @@ pub fn quaternion(tag: Tag, q: Q30, decimals: Decimals) -> Line {
 }
 
 /// `QC w x y z sequence micros *crc`: the fused orientation with its [`Stamp`], at most
-/// [`PACKET_LEN`](super::PACKET_LEN) bytes. More than five decimals are written as five, or it would not fit.
+/// [`PACKET_LEN`] bytes. More than five decimals are written as five, or it would not fit.
 ///
 /// The checksum is four hexadecimal digits, [`crc16`] of everything before the asterisk.
 #[inline(never)] // as above
