@@ -38,7 +38,7 @@ use cortex_m::peripheral::NVIC;
 use mk20dx_hal::pac;
 use vrduino::calibration::record::Record;
 use vrduino::imu::magnetometer::MagnetometerError;
-use vrduino::sampling::Timing;
+use vrduino::sampling::{Lock, Timing};
 use vrduino::sensor::RawSample;
 use vrduino::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use vrduino::tracker::Health;
@@ -73,6 +73,7 @@ pub struct Board {
     /// Why the board runs on six axes, if it does.
     no_compass: Option<MagnetometerError<i2c::Error>>,
     introduced: bool,
+    lock: Lock,
 }
 
 impl Board {
@@ -107,6 +108,7 @@ impl Board {
             fault: None,
             no_compass: None,
             introduced: false,
+            lock: Lock::default(),
         }
     }
 
@@ -145,12 +147,21 @@ impl Board {
     /// fails for longer is a fault. A magnetometer that fails is none: tracking goes on without.
     pub fn next_sample(&mut self) -> Result<(RawSample, Timing, Option<RawField>), Fault> {
         breadcrumb::mark(Stage::Sampling);
-        let (sample, timing, field) = self.imu.next_sample()?;
+        let field = self.imu.next_sample()?;
         if let Some(Err(loss)) = field {
             self.no_compass = Some(MagnetometerError::Lost(loss));
             self.tell_of_compass();
         }
-        Ok((sample, timing, field.and_then(Result::ok)))
+        Ok((self.imu.sample, self.imu.timing, field.and_then(Result::ok)))
+    }
+
+    /// Chooses what the sensor is read by, from the next sample on.
+    pub fn lock_on(&mut self, lock: Lock) {
+        if lock != self.lock {
+            self.lock = lock;
+            self.usb.follow_frames(lock == Lock::Usb);
+            imu::lock_on(lock);
+        }
     }
 
     /// Counters for the INFO lines.
@@ -164,12 +175,22 @@ impl Board {
     }
 
     /// Ends a turn of the main loop that went well.
+    #[inline(never)] // in SRAM, see memory.x
     pub fn end_of_turn(&mut self) {
         self.watchdog.feed();
-        self.go_on_keeping();
-        self.led.heartbeat(clock::milliseconds());
-        self.loader
-            .serve(self.usb.loader_asked(), clock::milliseconds());
+        // What is being kept goes on with each; the rest is for eyes and hands, for which one in four is enough.
+        if self.calibration.is_busy() {
+            self.go_on_keeping();
+        }
+        let now = clock::milliseconds();
+        if now.is_multiple_of(4) {
+            self.look_around(now);
+        }
+    }
+
+    fn look_around(&mut self, now: u32) {
+        self.led.heartbeat(now);
+        self.loader.serve(self.usb.loader_asked(), now);
         if self.usb.was_opened() {
             self.introduce();
         }
@@ -203,6 +224,7 @@ impl Board {
         }
     }
 
+    #[cold]
     fn go_on_keeping(&mut self) {
         if let Some(end) = self.calibration.serve(clock::milliseconds()) {
             self.usb.send(&end);

@@ -50,6 +50,7 @@ fn track(board: &mut Board, tracker: &mut Tracker<Instructions>) -> Result<Infal
         while let Some(command) = board.usb.command() {
             tracker.command(command, &mut |line| board.usb.send(line));
         }
+        board.lock_on(tracker.lock());
         if let Some(record) = tracker.take_calibration_to_keep() {
             board.keep_calibration(&record);
         }

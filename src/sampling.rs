@@ -26,3 +26,24 @@ pub struct Timing {
     /// per cent.
     pub locked: bool,
 }
+
+/// What decides when the sensor is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Lock {
+    /// The sensor's data-ready: every sample is read once.
+    #[default]
+    Sensor,
+    /// The host's start of frame: a sample a millisecond by the host's clock, at the same time in each frame. Now and
+    /// then one comes twice or is left out.
+    Usb,
+}
+
+impl Lock {
+    /// As it is typed.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sensor => "sensor",
+            Self::Usb => "usb",
+        }
+    }
+}

@@ -23,7 +23,7 @@ use crate::command::request::UseCompass;
 use crate::command::{Command, Mode};
 use crate::fixed::fusion::{Field, Force, Nanoseconds};
 use crate::fixed::multiply::{Multiply, Portable};
-use crate::sampling::Timing;
+use crate::sampling::{Lock, Timing};
 use crate::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use crate::sensor::{Ranges, RawSample, Sample};
 use crate::units::Seconds;
@@ -93,6 +93,7 @@ pub struct Tracker<M = Portable> {
     ticks: u32,
     counts: Tally,
     timing: Option<Timing>,
+    lock: Lock,
 }
 
 /// Whether there is an orientation, and what the next sample is to do to it.
@@ -151,6 +152,7 @@ impl<M: Multiply> Tracker<M> {
             ticks: 0,
             counts: Tally::default(),
             timing: None,
+            lock: Lock::default(),
         }
     }
 
@@ -213,6 +215,11 @@ impl<M: Multiply> Tracker<M> {
         {
             self.estimators.guess_bias(gyro.bias);
         }
+    }
+
+    /// What the host wants the sensor to be read by.
+    pub fn lock(&self) -> Lock {
+        self.lock
     }
 
     /// What is to be kept, once after each change of it.
@@ -318,7 +325,11 @@ impl<M: Multiply> Tracker<M> {
             }
         }
         match self.mode {
-            Mode::Flat => self.views.update_flat(&self.reading(raw)),
+            Mode::Flat => {
+                let (sample, bias) = (self.sample(raw), self.estimators.bias());
+                self.views
+                    .update_flat(sample, bias, self.estimators.sample_period());
+            }
             Mode::ThreeD => {
                 let (bias, period) = (self.estimators.bias(), self.estimators.sample_period());
                 self.views.update_gyro(raw.gyro, bias, period);
@@ -338,7 +349,7 @@ impl<M: Multiply> Tracker<M> {
         self.calibration.sample(self.ranges.sample(raw))
     }
 
-    /// The same without the bias that the estimator takes off.
+    /// In physical units, without the bias that the estimator takes off.
     fn reading(&self, raw: &RawSample) -> Reading<f32> {
         self.estimators.bias().correct(self.sample(raw))
     }

@@ -24,5 +24,7 @@ mod magnetometer;
 #[path = "boot/store.rs"]
 mod store;
 
+#[path = "boot/sampling.rs"]
+mod sampling;
 #[path = "boot/streams.rs"]
 mod streams;

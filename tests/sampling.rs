@@ -166,3 +166,26 @@ fn the_loop_does_not_depend_on_the_clock_that_it_is_given() {
         assert!(bench.errors_us.iter().all(|error| error.abs() < 1.1));
     }
 }
+
+#[test]
+fn read_by_another_clock_repeats_and_omissions_are_counted_and_the_time_is_known() {
+    for error in [-0.01, -0.000_4, 0.000_4, 0.01] {
+        let mut bench = Bench::new(Sensor::new(error, 0.3));
+        bench.run(TO_LOCK);
+        bench.errors_us.clear();
+        let before = bench.counts();
+        bench.run_by_the_host(20.0);
+        let counts = bench.counts().since(before);
+        assert!(counts.lost.abs_diff(counts.told_lost) <= 2, "{counts:?}");
+        let beats = (20_000.0 * error).abs();
+        let odd = f64::from(counts.lost + counts.repeated);
+        assert!((odd - beats).abs() <= 2.0, "{odd} for {beats}");
+        // Which read was the one behind an omission, nothing tells.
+        let off = bench.errors_us.iter().filter(|e| e.abs() > 25.0).count();
+        assert!(off <= 200, "{off} of twenty thousand at {error}");
+        // And back.
+        bench.ready.resume();
+        bench.run(TO_LOCK);
+        assert!(bench.ready.is_locked());
+    }
+}

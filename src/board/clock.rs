@@ -89,6 +89,22 @@ pub fn sleep_unless(ready: impl FnOnce() -> bool) {
     });
 }
 
+/// Sleeps until `ready`, which an interrupt brings about; others wake the core for as short as can be.
+#[inline(always)]
+pub fn sleep_until(ready: impl Fn() -> bool) {
+    cortex_m::interrupt::disable();
+    while !ready() {
+        // A pending interrupt ends WFI even while it is masked, and is served in the gap.
+        cortex_m::asm::wfi();
+        // SAFETY: no critical section surrounds this.
+        unsafe { cortex_m::interrupt::enable() };
+        cortex_m::asm::isb();
+        cortex_m::interrupt::disable();
+    }
+    // SAFETY: as above.
+    unsafe { cortex_m::interrupt::enable() };
+}
+
 /// Waiting, once the millisecond timer runs.
 pub struct Time;
 

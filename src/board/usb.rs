@@ -24,6 +24,7 @@ use vrduino::command::{Command, Parser};
 
 use super::breadcrumb::{self, Stage};
 use super::loader;
+use super::timer;
 use bus::Bus;
 use outbox::Outbox;
 
@@ -39,12 +40,14 @@ const PRIORITY: u8 = 0x80;
 #[unsafe(export_name = "vrduino_dropped_lines")]
 static DROPPED_LINES: AtomicU32 = AtomicU32::new(0);
 static OPENED: AtomicBool = AtomicBool::new(false);
+/// When the last frame began, by the board's clock; only while frames are followed.
+static FRAME: AtomicU32 = AtomicU32::new(0);
 static LOADER_ASKED: AtomicBool = AtomicBool::new(false);
 
 /// The interrupt's end of the port.
 struct Shared(UnsafeCell<Option<&'static mut Port>>);
 
-// SAFETY: it is accessed in the USB interrupt, and in `Usb::send` while that is masked.
+// SAFETY: it is accessed in the USB interrupt, and in `Usb::with_port` while that is masked.
 unsafe impl Sync for Shared {}
 
 static PORT: Shared = Shared(UnsafeCell::new(None));
@@ -52,6 +55,11 @@ static PORT: Shared = Shared(UnsafeCell::new(None));
 /// Lines that found no room since start.
 pub fn dropped_lines() -> u32 {
     DROPPED_LINES.load(Ordering::Relaxed)
+}
+
+/// When the host's last frame began, by the board's clock; only while frames are followed.
+pub fn last_frame() -> u32 {
+    FRAME.load(Ordering::Relaxed)
 }
 
 /// The main program's end of the serial port.
@@ -97,18 +105,28 @@ impl Usb {
 
     #[inline(never)]
     fn send_bytes(&mut self, frame: &[u8]) {
+        if self.with_port(|port| port.send(frame)) != Some(true) {
+            DROPPED_LINES.store(dropped_lines().wrapping_add(1), Ordering::Relaxed);
+        }
+    }
+
+    /// Takes down when each frame of the host begins, or no longer does.
+    pub fn follow_frames(&mut self, on: bool) {
+        self.with_port(|port| port.device.bus().follow_frames(on));
+    }
+
+    #[inline(always)]
+    fn with_port<T>(&mut self, work: impl FnOnce(&mut Port) -> T) -> Option<T> {
         NVIC::mask(Interrupt::USB0);
         // From here on the interrupt does not come (ARMv7-M, B3.4.1).
         cortex_m::asm::dsb();
         cortex_m::asm::isb();
         // SAFETY: the interrupt is masked, and nobody else has a reference.
         let port = unsafe { &mut *PORT.0.get() };
-        let taken = port.as_mut().is_some_and(|port| port.send(frame.as_ref()));
+        let result = port.as_mut().map(|port| work(port));
         // SAFETY: no critical section depends on it.
         unsafe { NVIC::unmask(Interrupt::USB0) };
-        if !taken {
-            DROPPED_LINES.store(dropped_lines().wrapping_add(1), Ordering::Relaxed);
-        }
+        result
     }
 
     /// The next command the host has typed. To be asked until there is none, once a millisecond.
@@ -172,6 +190,12 @@ impl Port {
     }
 
     fn service(&mut self) {
+        if self.device.bus().take_frame() {
+            FRAME.store(timer::now(), Ordering::Relaxed);
+            if self.device.bus().is_quiet() {
+                return;
+            }
+        }
         // Mostly, a packet has gone, which concerns nobody but the next.
         if !self.device.bus().take_sent() {
             self.service_all();

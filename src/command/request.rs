@@ -4,6 +4,7 @@ use core::fmt;
 use heapless::String;
 
 use super::number;
+use crate::sampling::Lock;
 use crate::wire::Decimals;
 
 pub use super::setting::Setting;
@@ -41,6 +42,8 @@ pub enum Request {
     Every(Option<u16>),
     /// `:bias`: what the gyro reads at rest, and how that is known.
     Bias,
+    /// `:lock` asks, `:lock sensor` and `:lock usb` choose: what decides when the sensor is read.
+    Lock(Option<Lock>),
 }
 
 /// How the fused orientation is put on the wire.
@@ -296,6 +299,12 @@ pub fn parse(line: &str) -> Result<Request, Refusal> {
                 Ok(samples @ 1..=MOST_EVERY) => Some(samples),
                 _ => return refuse(word, Reason::Wanted("1 to 1000")),
             },
+        }),
+        "lock" => Request::Lock(match next() {
+            None => None,
+            Some("sensor") => Some(Lock::Sensor),
+            Some("usb") => Some(Lock::Usb),
+            Some(other) => return refuse(other, Reason::Wanted("sensor or usb")),
         }),
         "get" => Request::Get(setting(verb, next())?),
         "set" => {

@@ -190,7 +190,7 @@ impl DataReady {
                 self.begin_run();
             }
         } else {
-            self.skip_lost(at);
+            self.skip_lost(at, self.period / 16);
             match not_yet {
                 Some(before) => self.edge(before, at),
                 None => self.slide_on(),
@@ -201,6 +201,54 @@ impl DataReady {
             self.pass();
         }
         timing
+    }
+
+    /// The status was read at the moment `at`, which was chosen by somebody else, and told whether there was a new
+    /// sample. When was the one ready that was read, or repeated? Samples that were left out are among those lost.
+    ///
+    /// A sensor that is slower is followed all the same, by the samples that come twice. With one that is faster nothing
+    /// is heard of those that are left out: they are reckoned from the period that was measured before.
+    pub fn read_at(&mut self, at: u32, new: bool) -> Timing {
+        let at = at << FRACTION;
+        self.not_yet = None;
+        if self.phase == Phase::Seeking {
+            self.expected = at;
+        } else if new {
+            self.skip_lost(at, 0);
+        }
+        let late = at.wrapping_sub(self.expected) as i32;
+        // New before it was expected, or not there although it was.
+        if (late < 0) == new {
+            self.correct(late);
+        }
+        if !new {
+            return Timing {
+                micros: self.micros,
+                period_ns: self.period_ns(),
+                lost: 0,
+                locked: false,
+            };
+        }
+        let timing = self.stamp();
+        self.pass();
+        Timing {
+            locked: false,
+            ..timing
+        }
+    }
+
+    /// A bound of data-ready was passed by so much.
+    fn correct(&mut self, residual: i32) {
+        let samples = self.since.max(LONGEST_RUN) as i32;
+        self.expected = self.expected.wrapping_add_signed(residual);
+        self.period = self.period.saturating_add_signed(residual / samples);
+        self.since = 0;
+    }
+
+    /// Seeks data-ready anew, after reads at moments of somebody else's choice.
+    pub fn resume(&mut self) {
+        self.expected = self.stamped;
+        self.seek();
     }
 
     /// Whether the sensor's clock is known.
@@ -214,10 +262,10 @@ impl DataReady {
         self.since += 1;
     }
 
-    /// Samples that were ready long before the read that found one.
-    fn skip_lost(&mut self, at: u32) {
+    /// Samples that were ready a period and `more` before the read that found one.
+    fn skip_lost(&mut self, at: u32, more: u32) {
         let mut late = at.wrapping_sub(self.expected) as i32;
-        while late > (self.period + self.period / 16) as i32 {
+        while late > (self.period + more) as i32 {
             late -= self.period as i32;
             self.lost += 1;
             self.pass();
@@ -298,14 +346,15 @@ impl DataReady {
         let lost = core::mem::take(&mut self.lost);
         Timing {
             micros: self.micros,
-            period_ns: (u64::from(self.period) * self.ns_per_unit() >> 24) as u32,
+            period_ns: self.period_ns(),
             lost,
             locked: self.is_locked(),
         }
     }
 
-    /// Nanoseconds in 1/256 tick, with 24 bits behind the point.
-    fn ns_per_unit(&self) -> u64 {
-        u64::from((1000 << 16) / self.ticks_per_us)
+    fn period_ns(&self) -> u32 {
+        // Nanoseconds in 1/256 tick, with 24 bits behind the point.
+        let unit = u64::from((1000 << 16) / self.ticks_per_us);
+        (u64::from(self.period) * unit >> 24) as u32
     }
 }

@@ -6,6 +6,7 @@ use crate::command::request::{Choice, Format, Refusal, Request, Setting, UseComp
 use crate::fixed::fusion::Fusion;
 use crate::fixed::multiply::Multiply;
 use crate::fusion::{Motion, Source};
+use crate::sampling::Lock;
 use crate::units::AngularRate;
 use crate::wire::provenance::Compass;
 use crate::wire::{self, Decimals, Line};
@@ -17,7 +18,7 @@ impl<M: Multiply> Tracker<M> {
         match line {
             Err(refusal) => wire::text(format_args!("ERR {refusal}")),
             Ok(Request::Help) => wire::text(
-                "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals stream every",
+                "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals stream every lock",
             ),
             Ok(Request::Version) => wire::text(concat!("OK vrduino ", env!("CARGO_PKG_VERSION"))),
             Ok(Request::Estimator(choice)) => {
@@ -35,6 +36,7 @@ impl<M: Multiply> Tracker<M> {
                 estimators.set_defaults();
                 self.stream.set_defaults();
                 self.use_compass = UseCompass::default();
+                self.lock = Lock::default();
                 wire::text("OK defaults")
             }
             Ok(Request::Compass(choice)) => {
@@ -75,6 +77,12 @@ impl<M: Multiply> Tracker<M> {
                 self.stream_state()
             }
             Ok(Request::Bias) => bias(estimators),
+            Ok(Request::Lock(lock)) => {
+                if let Some(lock) = lock {
+                    self.lock = lock;
+                }
+                wire::text(format_args!("OK lock {}", self.lock.name()))
+            }
         }
     }
 }

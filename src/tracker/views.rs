@@ -2,20 +2,19 @@
 
 use super::estimators::SAMPLE_NANOSECONDS;
 use super::{SAMPLE_PERIOD, unit};
-use crate::calibration::{GyroBias, Reading};
+use crate::calibration::GyroBias;
 use crate::fixed::complementary::{Bias, Complementary, Force, Nanoseconds, Parameters};
 use crate::fixed::multiply::Multiply;
 use crate::orientation::DEFAULT_TIME_CONSTANT;
 use crate::orientation::flatland::{Flatland, Roll};
-use crate::sensor::{GyroRange, Ranges};
-use crate::units::SpecificForce;
+use crate::sensor::{GyroRange, Ranges, Sample};
+use crate::units::{AngularRate, SpecificForce};
 use nalgebra::Vector3;
 
 /// They run only while they are shown.
 #[derive(Clone, Debug)]
 pub struct Views<M> {
     range: GyroRange,
-    /// At the sensor's nominal period.
     flat: Flatland<f32>,
     /// Of which only the turns by the gyro are used: section 5.1 of the notes.
     gyro: Complementary<M>,
@@ -42,9 +41,13 @@ impl<M: Multiply> Views<M> {
         self.gyro.set(orientation);
     }
 
-    /// A sample in the plane (section 3).
-    pub fn update_flat(&mut self, reading: &Reading<f32>) {
-        self.flat.update(reading);
+    /// A sample in the plane (section 3), with its bias. A longer period than the nominal one turns further.
+    pub fn update_flat(&mut self, sample: Sample<f32>, bias: GyroBias<f32>, period: Nanoseconds) {
+        let longer = period.0 as f32 / SAMPLE_NANOSECONDS.0 as f32;
+        let turn = (sample.rate.rad_per_s() - bias.rate().rad_per_s()) * longer;
+        let rate = AngularRate::from_rad_per_s(turn);
+        let stretched = Sample { rate, ..sample };
+        self.flat.update(&GyroBias::zero().correct(stretched));
     }
 
     /// A sample for the gyro alone, with its bias.

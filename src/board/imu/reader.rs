@@ -12,18 +12,21 @@
 //! The magnetometer is asked behind the burst, on the same hold of the bus, so that it delays no sample: 0.11 ms for
 //! its status, 0.29 ms for a measurement. What it says goes out with the next sample.
 
+use core::sync::atomic::{AtomicU32, Ordering};
+
 use heapless::spsc::Producer;
 use vrduino::imu::magnetometer::polling::{self, ANSWER_LEN, Polling, Request};
 use vrduino::imu::{ADDRESS, magnetometer};
-use vrduino::sampling::Timing;
 use vrduino::sampling::data_ready::{DataReady, Early};
-use vrduino::sensor::{BURST_LEN, BURST_START, Burst, RAW_DATA_READY};
+use vrduino::sampling::{Lock, Timing};
+use vrduino::sensor::{BURST_LEN, BURST_START, RAW_DATA_READY};
 
 use super::super::clock;
 use super::super::dma::Dma;
 use super::super::i2c::{Error, I2c};
 use super::super::timer::{self, Alarm, TICKS_PER_US};
-use super::sampling::{Counts, Sampled};
+use super::super::usb;
+use super::sampling::{Counts, Outcome, Sampled};
 
 /// Between the alarms while nothing is sampled.
 const TICK: u32 = 1000 * TICKS_PER_US;
@@ -34,8 +37,19 @@ const PAUSE: u32 = 10 * TICKS_PER_US;
 const FIELD: u32 = 320 * TICKS_PER_US;
 /// From a START to the moment at which the status is read, until it was measured: three addresses and registers.
 const LEAD: u32 = 80 * TICKS_PER_US;
+/// From a START to the packet at its endpoint: addresses, burst, filter and frame. Locked on USB, that is how long ahead
+/// of the host's next frame a read begins.
+const AHEAD: u32 = 510 * TICKS_PER_US;
+/// Frames without word of which the host counts as away.
+const FRAMES_MISSED: u32 = 5;
 /// Alarms after which a read that does not end is given up.
 const STUCK_ALARMS: u8 = 3;
+
+/// When the last sample was ready, in microseconds; wraps. Under a name that survives optimisation, so that the
+/// emulator can compare it with the truth.
+// SAFETY: no other item has this name.
+#[unsafe(export_name = "vrduino_data_ready_us")]
+static DATA_READY: AtomicU32 = AtomicU32::new(0);
 
 /// What the bus is used for.
 #[derive(Clone, Copy)]
@@ -99,6 +113,7 @@ pub struct Reader {
     bus: Option<I2c>,
     job: Job,
     step: Step,
+    lock: Lock,
     ready: DataReady,
     /// When the read was begun, and how long it then took to come to the status.
     begun: u32,
@@ -125,6 +140,7 @@ impl Reader {
             bus: None,
             job: Job::Sample,
             step: Step::Idle,
+            lock: Lock::default(),
             ready: DataReady::new(TICKS_PER_US),
             begun: 0,
             lead: LEAD,
@@ -146,6 +162,14 @@ impl Reader {
         self.magnetometer = magnetometer;
         self.field = None;
         self.stuck_alarms = 0;
+    }
+
+    /// Chooses what the sensor is read by. Not to be interrupted.
+    pub fn lock_on(&mut self, lock: Lock) {
+        self.lock = lock;
+        if lock == Lock::Sensor {
+            self.ready.resume();
+        }
     }
 
     /// Gives the bus back. Not to be interrupted.
@@ -173,7 +197,7 @@ impl Reader {
     }
 
     /// The read before has not ended.
-    #[inline(never)]
+    #[cold]
     fn overrun(&mut self) {
         self.stuck_alarms += 1;
         let mut error = Error::Busy;
@@ -182,7 +206,7 @@ impl Reader {
             self.break_off();
         }
         self.timing = self.ready.miss();
-        self.deliver(Err(error));
+        self.deliver(Outcome::Failed(error));
     }
 
     /// A byte has ended, other than those that DMA takes.
@@ -242,28 +266,37 @@ impl Reader {
     }
 
     /// Is there a new sample?
-    #[inline(always)]
+    #[inline(never)]
     fn status(&mut self) {
         let Some(bus) = &mut self.bus else { return };
         let status = bus.get();
         let asked = self.begun.wrapping_add(self.lead);
-        if status & RAW_DATA_READY != 0 {
+        let new = status & RAW_DATA_READY != 0;
+        if new {
             self.dma.receive(1, BURST_LEN - 2);
             bus.hand_to_dma();
             self.dma.put(0, status);
             self.step = Step::Bytes;
-            self.timing = self.ready.new_sample(asked);
         } else {
             bus.refuse_last();
             self.step = Step::Unwanted;
         }
+        match self.lock {
+            Lock::Usb => self.timing = self.ready.read_at(asked, new),
+            Lock::Sensor if new => self.timing = self.ready.new_sample(asked),
+            Lock::Sensor => {}
+        }
     }
 
     /// There was none.
-    #[inline(never)]
+    #[cold]
     fn ask_again(&mut self) {
         let Some(bus) = &mut self.bus else { return };
-        match self.ready.not_yet(self.begun.wrapping_add(self.lead)) {
+        let next = match self.lock {
+            Lock::Sensor => self.ready.not_yet(self.begun.wrapping_add(self.lead)),
+            Lock::Usb => Early::Repeat(self.timing),
+        };
+        match next {
             Early::Again => {
                 self.alarm.set(TICK);
                 let _ = bus.receive_last_and_hold();
@@ -276,7 +309,7 @@ impl Reader {
                 let _ = bus.get();
                 self.step = Step::Idle;
                 self.timing = timing;
-                self.deliver(Ok(None));
+                self.deliver(Outcome::Nothing);
             }
         }
     }
@@ -298,12 +331,12 @@ impl Reader {
     }
 
     /// The last byte has come in.
-    #[inline(always)]
+    #[inline(never)]
     fn last(&mut self) {
+        let room = self.until_next();
         let Some(bus) = &mut self.bus else { return };
-        let room = self.ready.ticks_until_ask(timer::now());
         let next = match (self.job, &mut self.magnetometer) {
-            (Job::Sample, Some(magnetometer)) if room > self.lead + FIELD => magnetometer.sample(),
+            (Job::Sample, Some(magnetometer)) if room > FIELD => magnetometer.sample(),
             _ => None,
         };
         let at = self.job.length() - 1;
@@ -316,29 +349,22 @@ impl Reader {
         self.dma.put(at, bus.receive_last_and_hold());
         bus.begin_again(magnetometer::ADDRESS << 1, true);
         self.step = Step::AddressToWrite;
-        self.deliver_burst();
+        self.deliver(Outcome::New);
         self.job = Job::Field(request);
     }
 
     /// All bytes are there, and the bus is free.
-    #[inline(always)]
     fn end(&mut self) {
         self.step = Step::Idle;
         match self.job {
-            Job::Sample => self.deliver_burst(),
+            Job::Sample => self.deliver(Outcome::New),
             Job::Field(_) => self.take_answer(),
         }
     }
 
-    #[inline(always)]
-    fn deliver_burst(&mut self) {
-        let [burst @ .., _] = self.dma.bytes();
-        self.deliver(Ok(Some(burst)));
-    }
-
     #[inline(never)]
     fn take_answer(&mut self) {
-        let bytes = self.dma.bytes();
+        let bytes = self.dma.bytes().array();
         let answer = bytes.first_chunk::<ANSWER_LEN>();
         let measured = match (&mut self.magnetometer, answer) {
             (Some(magnetometer), Some(answer)) => magnetometer.answer(answer),
@@ -360,36 +386,67 @@ impl Reader {
         self.step = Step::Idle;
     }
 
-    #[inline(never)]
+    #[cold]
     fn fail(&mut self, error: Error) {
         self.break_off();
         match (self.job, &mut self.magnetometer) {
             (Job::Sample, _) => {
                 self.timing = self.ready.miss();
-                self.deliver(Err(error));
+                self.deliver(Outcome::Failed(error));
             }
             (Job::Field(_), Some(magnetometer)) => magnetometer.refuse(),
             (Job::Field(_), None) => {}
         }
     }
 
-    /// Hands over what has come in, and sets the alarm for the next.
+    /// Ticks until the next read is to begin.
     #[inline(always)]
-    fn deliver(&mut self, burst: Result<Option<Burst>, Error>) {
-        let wait = self.ready.ticks_until_ask(timer::now());
-        self.alarm.set(wait.saturating_sub(self.lead).max(PAUSE));
+    fn until_next(&self) -> u32 {
+        let now = timer::now();
+        if self.lock == Lock::Usb
+            && let Some(wait) = until_ahead_of_frame(now)
+        {
+            return wait;
+        }
+        let wait = self.ready.ticks_until_ask(now);
+        wait.saturating_sub(self.lead).max(PAUSE)
+    }
+
+    /// Hands over what has come in, and sets the alarm for the next.
+    #[inline(never)]
+    fn deliver(&mut self, outcome: Outcome) {
+        let wait = self.until_next();
+        self.alarm.set(wait);
         self.counts.lost = self.counts.lost.wrapping_add(self.timing.lost);
-        let sampled = Sampled {
-            burst,
-            timing: self.timing,
-            field: self.field.take(),
-        };
-        if self.results.enqueue(sampled).is_err() {
+        DATA_READY.store(self.timing.micros as u32, Ordering::Relaxed);
+        if self.results.ready() {
+            let sampled = Sampled {
+                outcome,
+                bytes: self.dma.bytes(),
+                timing: self.timing,
+                field: self.field.take(),
+            };
+            // SAFETY: there is room, and nobody else puts anything in.
+            unsafe { self.results.enqueue_unchecked(sampled) }
+        } else {
             self.counts.lost = self.counts.lost.wrapping_add(1);
         }
-        if let Some(loss) = self.magnetometer.as_ref().and_then(Polling::loss) {
+        if let Some(magnetometer) = &self.magnetometer
+            && let Some(loss) = magnetometer.loss()
+        {
             self.magnetometer = None;
             self.field = Some(Err(loss));
         }
     }
+}
+
+/// Ticks until [`AHEAD`] of a frame of the host, if there are frames.
+#[inline(never)]
+fn until_ahead_of_frame(now: u32) -> Option<u32> {
+    let since = now.wrapping_sub(usb::last_frame());
+    if since > FRAMES_MISSED * TICK {
+        return None;
+    }
+    let wait = (2 * TICK - AHEAD - since % TICK) % TICK;
+    Some(if wait < PAUSE { wait + TICK } else { wait })
 }

@@ -9,12 +9,11 @@ use core::cell::UnsafeCell;
 use heapless::spsc::{Consumer, Queue};
 use mk20dx_hal::pac::Interrupt;
 use vrduino::imu::magnetometer::polling::{Loss, Polling};
-use vrduino::sampling::Timing;
-use vrduino::sensor::Burst;
+use vrduino::sampling::{Lock, Timing};
 use vrduino::sensor::magnetometer::RawField;
 
 use super::super::breadcrumb::{self, Stage};
-use super::super::dma::Dma;
+use super::super::dma::{Bytes, Dma};
 use super::super::i2c::{Error, I2c};
 use super::super::timer::Alarm;
 use super::reader::Reader;
@@ -24,10 +23,23 @@ const WAITING: usize = 16;
 /// More urgent than USB (0x80); only the upper four bits exist.
 const PRIORITY: u8 = 0x40;
 
+/// How a read has ended.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// With a new sample.
+    New,
+    /// The sensor had nothing new.
+    Nothing,
+    /// There was none.
+    Failed(Error),
+}
+
 /// What a period of the sensor has brought.
 pub struct Sampled {
-    /// From the IMU; `None` if it had nothing new.
-    pub burst: Result<Option<Burst>, Error>,
+    /// Whether there is a burst.
+    pub outcome: Outcome,
+    /// From the IMU.
+    pub bytes: Bytes,
     /// When that was ready.
     pub timing: Timing,
     /// From the magnetometer, mostly nothing; that it is lost is said once.
@@ -81,6 +93,11 @@ pub fn take() -> Option<I2c> {
     look(Reader::take).flatten()
 }
 
+/// Chooses what the sensor is read by, from the next sample on.
+pub fn lock_on(lock: Lock) {
+    look(|reader| reader.lock_on(lock));
+}
+
 /// What has been counted so far.
 pub fn counts() -> Counts {
     look(|reader| reader.counts).unwrap_or_default()
@@ -107,23 +124,23 @@ fn during_interrupt(work: impl FnOnce(&mut Reader)) {
 
 // Handlers by the names of the vector table. Not by the attribute for it, which leaves no say in where they are.
 
-// SAFETY: the vector table has this name for the handler of PIT0; `.data` is copied to SRAM and may be executed there.
+// SAFETY: the vector table has this name for the handler of PIT0; `memory.x` puts `.fast` into SRAM.
 #[unsafe(no_mangle)]
-#[unsafe(link_section = ".data.sampling")]
+#[unsafe(link_section = ".fast")]
 extern "C" fn PIT0() {
     during_interrupt(Reader::alarm);
 }
 
 // SAFETY: as above, for I2C0.
 #[unsafe(no_mangle)]
-#[unsafe(link_section = ".data.sampling")]
+#[unsafe(link_section = ".fast")]
 extern "C" fn I2C0() {
     during_interrupt(Reader::byte);
 }
 
 // SAFETY: as above, for channel 0 of the DMA controller.
 #[unsafe(no_mangle)]
-#[unsafe(link_section = ".data.sampling")]
+#[unsafe(link_section = ".fast")]
 extern "C" fn DMA0() {
     during_interrupt(Reader::all_but_last);
 }

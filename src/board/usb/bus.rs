@@ -13,6 +13,7 @@
 //!   acknowledged and dropped by the controller.
 
 use core::cell::UnsafeCell;
+use core::sync::atomic::{AtomicBool, Ordering};
 use mk20dx_hal::pac;
 use usb_device::bus::{PollResult, UsbBus};
 use usb_device::endpoint::{EndpointAddress, EndpointType};
@@ -57,6 +58,8 @@ const NO_CONTROL: u8 = 1 << 4;
 /// The controller.
 pub struct Bus {
     state: UnsafeCell<Endpoints>,
+    /// Frames are followed.
+    frames: AtomicBool,
 }
 
 // SAFETY: all of this runs in the USB interrupt, or in the main program while that is masked; and `with`, the only one
@@ -80,12 +83,50 @@ impl Bus {
         sim.scgc4().modify(|_, w| w.usbotg().enabled());
         Bus {
             state: UnsafeCell::new(Endpoints::default()),
+            frames: AtomicBool::new(false),
         }
     }
 
     fn with<T>(&self, work: impl FnOnce(&mut Endpoints) -> T) -> T {
         // SAFETY: see above.
         work(unsafe { &mut *self.state.get() })
+    }
+
+    /// Interrupts while the bus is in use.
+    fn awake(&self) -> u8 {
+        match self.frames.load(Ordering::Relaxed) {
+            true => AWAKE | flag::START_OF_FRAME,
+            false => AWAKE,
+        }
+    }
+
+    /// Interrupts at the start of every frame, or no longer.
+    pub fn follow_frames(&self, on: bool) {
+        self.frames.store(on, Ordering::Relaxed);
+        // A suspended bus has no frames; it is told when it wakes up.
+        if registers().inten().read().bits() & flag::TOKEN != 0 {
+            self.interrupts(self.awake());
+        }
+    }
+
+    /// Whether a frame has begun, on a bus in use whose frames are followed.
+    #[inline(always)]
+    pub fn take_frame(&self) -> bool {
+        if !self.frames.load(Ordering::Relaxed) {
+            return false;
+        }
+        let enabled = registers().inten().read().bits();
+        let flags = registers().istat().read().bits();
+        let begun = enabled & flag::TOKEN != 0 && flags & flag::START_OF_FRAME != 0;
+        if begun {
+            self.clear(flag::START_OF_FRAME);
+        }
+        begun
+    }
+
+    /// Whether nothing has happened.
+    pub fn is_quiet(&self) -> bool {
+        registers().istat().read().bits() & (AWAKE | flag::RESUME) == 0
     }
 
     /// Whether nothing has happened but that a packet of a data endpoint has gone to the host, which then is taken
@@ -262,7 +303,7 @@ impl UsbBus for Bus {
         self.control(ENABLE);
         // SAFETY: not suspended, no weak pull-downs.
         registers().usbctrl().write(|w| unsafe { w.bits(0) });
-        self.interrupts(AWAKE);
+        self.interrupts(self.awake());
         registers()
             .control()
             .write(|w| w.dppullupnonotg().set_bit());
@@ -317,7 +358,7 @@ impl UsbBus for Bus {
         self.clear(0xFF);
         // SAFETY: ERRSTAT takes any value; it clears the flags written as 1.
         registers().errstat().write(|w| unsafe { w.bits(0xFF) });
-        self.interrupts(AWAKE);
+        self.interrupts(self.awake());
         self.control(ENABLE);
     }
 
@@ -422,7 +463,7 @@ impl UsbBus for Bus {
     }
 
     fn resume(&self) {
-        self.interrupts(AWAKE);
+        self.interrupts(self.awake());
     }
 
     fn poll(&self) -> PollResult {
