@@ -1,0 +1,2 @@
+//! `cargo cost`.
+fn main() {}
