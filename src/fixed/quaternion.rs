@@ -50,7 +50,12 @@ impl<M: Multiply> Quaternion<M> {
     /// w, x, y and z, rounded down.
     #[inline(always)]
     pub fn upper(self) -> [Q<M, 30>; 4] {
-        [self.w, self.x, self.y, self.z].map(Wide::upper)
+        [
+            self.w.upper(),
+            self.x.upper(),
+            self.y.upper(),
+            self.z.upper(),
+        ]
     }
 
     /// q (1, t): a turn in the body's own axes; √(1 + t²) times as long.

@@ -25,8 +25,10 @@ impl<M: Multiply, const BITS: u32> Vector<M, BITS> {
     #[inline(always)]
     pub fn from_counts(counts: [i16; 3]) -> Self {
         const { assert!(BITS <= 16, "16 bits of a count are before the point") }
-        let [x, y, z] = counts.map(|count| Q::from_bits(i32::from(count) << BITS));
-        Self { x, y, z }
+        // Not by way of `map`, which is a loop in an image built for size.
+        let [x, y, z] = counts;
+        let q = |count: i16| Q::from_bits(i32::from(count) << BITS);
+        Self::new(q(x), q(y), q(z))
     }
 
     /// The sum of the squares.
