@@ -2,7 +2,11 @@
 
 pub mod debug;
 
+pub mod figures;
+
 mod judgement;
+
+pub mod latency;
 
 mod loader;
 
@@ -11,6 +15,8 @@ pub mod measure;
 mod passing;
 
 mod polling;
+
+pub mod profile;
 
 pub mod setup;
 
@@ -24,6 +30,7 @@ use std::sync::{Arc, MutexGuard};
 
 use crate::chip::{Chip, INTERRUPTS};
 use crate::cpu::op::Access;
+use crate::cpu::timing::Cycles;
 use crate::cpu::{Cpu, Pace, PeripheralBus, RAM_BASE};
 use crate::image::Image;
 use crate::journal::Happening;
@@ -34,8 +41,10 @@ use crate::time::Ticks;
 use crate::witness::{Stop, Trap};
 pub use judgement::Event;
 use judgement::Storm;
+use latency::Latencies;
 use measure::{Measure, Moment};
 use polling::Polling;
+use profile::Profile;
 pub use setup::Setup;
 use shared::Shared;
 pub use snapshot::Snapshot;
@@ -77,6 +86,12 @@ pub struct Board {
     watch: Watch,
     /// Where the image's variables end: below this the stack must not grow.
     stack_limit: u32,
+    latencies: Latencies,
+    /// Where the USB controller looks for its buffer descriptors.
+    usb_table: u32,
+    profile: Option<Profile>,
+    /// Where the figures begin: the moment, the time awake and the time the bus was in use until then.
+    began: (Ticks, Cycles, Ticks),
 }
 
 impl Board {
@@ -121,6 +136,10 @@ impl Board {
             polling: setup.skip_polling.then(Polling::default),
             watch: Watch::default(),
             stack_limit,
+            latencies: Latencies::default(),
+            usb_table: 0,
+            profile: None,
+            began: (0, Cycles::default(), 0),
         }
     }
 
@@ -166,6 +185,12 @@ impl Board {
         self.last_access = step.access;
         self.pass(self.pace.of(step.cycles));
         self.measure.awake(step.cycles, self.core_hz);
+        if let Some(profile) = &mut self.profile {
+            profile.note(self.pc, step.cycles);
+        }
+        if let Some(access) = step.access.filter(|access| access.store) {
+            self.follow_sample(access.address);
+        }
         let moment = Moment {
             pc: self.pc,
             exception,
@@ -205,6 +230,19 @@ impl Board {
             && self.cpu.wants_reset()
         {
             self.reset(Cause::Software, "the program asked for it (SYSRESETREQ)");
+        }
+    }
+
+    /// The program has stored something at `address`: a packet with the sample that it fetched last?
+    fn follow_sample(&mut self, address: u32) {
+        if address & !0x1FF != self.usb_table {
+            return;
+        }
+        let mut chip = self.shared.chip();
+        if chip.usb.is_armed_by(address, &chip.ram)
+            && let Some(ready) = chip.sensor.take_fetched()
+        {
+            self.latencies.push(self.now - ready);
         }
     }
 
@@ -269,6 +307,7 @@ impl Board {
         }
         self.flash_ratio = chip.flash_ratio();
         self.next_event = chip.next_event();
+        self.usb_table = chip.usb.table();
     }
 
     fn reset(&mut self, cause: Cause, why: &str) {
@@ -334,6 +373,11 @@ impl Board {
     /// The present moment.
     pub fn now(&self) -> Ticks {
         self.now
+    }
+
+    /// How long samples were on their way.
+    pub fn latencies(&self) -> &Latencies {
+        &self.latencies
     }
 
     /// What the run is measured by.
