@@ -84,7 +84,7 @@ pub fn count(image: &Path, subject: &Subject) -> Result<Count, Box<dyn Error>> {
     let calls = board.measure().calls;
     let address = board
         .image()
-        .address_of("run::ORIENTATIONS")
+        .address_of("run::KEPT")
         .ok_or("the program keeps no orientations; build it again")?;
     let bytes = board.peek(address, SAMPLES / KEPT_EVERY * 32);
     let double = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().unwrap_or([0; 8]));
@@ -104,7 +104,7 @@ pub fn count(image: &Path, subject: &Subject) -> Result<Count, Box<dyn Error>> {
 /// Runs until the program says `state`.
 fn until(board: &mut Board, state: u32, name: &str) -> Result<(), String> {
     let end = board.now() + LIMIT;
-    while board.variable("run::DONE") != Some(state) {
+    while board.variable("run::STATE") != Some(state) {
         board.run(MILLISECOND);
         if let Some(stop) = board.stop() {
             return Err(format!("{name}: {stop}"));

@@ -7,7 +7,7 @@ use crate::filter::{BIAS_PARTS, PERIOD_S};
 use vrduino::sensor::RawSample;
 
 /// How many samples there are.
-pub const SAMPLES: usize = 2000;
+pub const SAMPLES: usize = 1000;
 
 /// How many samples there are from one of the magnetometer to the next: 100 a second.
 pub const FIELD_EVERY: usize = 10;

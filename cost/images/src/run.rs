@@ -1,7 +1,7 @@
 //! Runs a filter on the chip, at 72 MHz.
 //!
 //! A program made by [`filters!`](crate::filters) waits at the end of `main`. Whoever counts makes it go on at the
-//! function `run` of a filter's module, counts the calls of `update` beside it, and waits for `DONE`.
+//! function `run` of a filter's module, counts the calls of `update` beside it, and waits for `STATE`.
 
 #![allow(unsafe_code, reason = "registers")]
 
@@ -16,12 +16,12 @@ pub const KEPT_EVERY: usize = 8;
 
 /// w, x, y, z as of every eighth sample: the bits of doubles, the lower half first.
 #[used]
-static ORIENTATIONS: [AtomicU32; 8 * SAMPLES / KEPT_EVERY] =
+static KEPT: [AtomicU32; 8 * SAMPLES / KEPT_EVERY] =
     [const { AtomicU32::new(0) }; 8 * SAMPLES / KEPT_EVERY];
 
 /// 1 while a filter can be run, 2 when it has been.
 #[used]
-static DONE: AtomicU32 = AtomicU32::new(0);
+static STATE: AtomicU32 = AtomicU32::new(0);
 
 /// Switches the watchdog off (K20 manual, WDOG).
 ///
@@ -44,7 +44,7 @@ pub fn wait() -> ! {
     if let Some(chip) = Peripherals::take() {
         chip.mcg.constrain().freeze(chip.osc, &chip.sim);
     }
-    DONE.store(1, Ordering::Relaxed);
+    STATE.store(1, Ordering::Relaxed);
     loop {
         core::hint::spin_loop();
     }
@@ -55,7 +55,7 @@ pub fn run<F: Filter>(input: &[Counts; SAMPLES], update: fn(&mut F, &Counts)) ->
     let [first, others @ ..] = input;
     let mut filter = F::start();
     filter.update(first);
-    let mut kept = ORIENTATIONS.chunks_exact(8);
+    let mut kept = KEPT.chunks_exact(8);
     for (number, counts) in others.iter().enumerate() {
         update(&mut filter, counts);
         if (number + 2) % KEPT_EVERY == 0
@@ -67,7 +67,7 @@ pub fn run<F: Filter>(input: &[Counts; SAMPLES], update: fn(&mut F, &Counts)) ->
             }
         }
     }
-    DONE.store(2, Ordering::Relaxed);
+    STATE.store(2, Ordering::Relaxed);
     loop {
         core::hint::spin_loop();
     }
