@@ -6,9 +6,9 @@ use std::sync::OnceLock;
 
 use object::{Object, ObjectSection, ObjectSymbol};
 use vrduino::fixed::multiply::Portable;
-use vrduino_cost::{Motion, Random, SAMPLES};
+use vrduino_cost::subject::OURS;
+use vrduino_cost_images::motion::{Motion, Random, SAMPLES};
 use vrduino_emulator::board::{Board, Setup};
-use vrduino_emulator::firmware::{self, BuildOptions, Package};
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::turns::Turns;
 use vrduino_emulator::time::MILLISECOND;
@@ -21,13 +21,8 @@ const WORST: u64 = 1_000;
 fn path() -> &'static PathBuf {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
     PATH.get_or_init(|| {
-        let package = Package {
-            name: "vrduino-cost",
-            feature: "image",
-        };
-        firmware::build_package(package, BuildOptions { quiet: true })
-            .expect("the images build")
-            .join("fixed-complementary")
+        let filters = OURS.build().expect("the images build");
+        filters.with_file_name("fixed-complementary")
     })
 }
 

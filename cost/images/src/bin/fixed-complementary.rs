@@ -6,7 +6,7 @@
 #![no_std]
 #![no_main]
 
-#[path = "../../../src/board/multiply.rs"]
+#[path = "../../../../src/board/multiply.rs"]
 mod multiply;
 
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -16,7 +16,7 @@ use panic_halt as _;
 use vrduino::fixed::complementary::Complementary;
 use vrduino::fixed::multiply::{Multiply, Portable};
 use vrduino::sensor::RawSample;
-use vrduino_cost::{Motion, Random, SAMPLES};
+use vrduino_cost_images::motion::{Motion, Random, SAMPLES};
 
 /// w, x, y, z at the end of each motion, as the bits of Q30.
 #[unsafe(no_mangle)]

@@ -1,0 +1,109 @@
+//! `cargo cost`.
+
+use std::error::Error;
+use std::fs;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::thread;
+
+use clap::Parser;
+use vrduino_cost::subject::{OURS, PEERS, Program, YARDSTICK};
+use vrduino_cost::table::{self, Row};
+use vrduino_cost::{count, firmware};
+use vrduino_emulator::firmware as tracker;
+use vrduino_emulator::firmware::BuildOptions;
+
+/// Counts on the emulated chip what an update of each filter costs, and what the tracker does from the sensor to USB.
+///
+/// Counts are exact: two runs print the same. A cycle takes 1/72 us; the band of cycles is what the manuals leave open.
+#[derive(Parser)]
+#[command(name = "cargo cost", version)]
+struct Arguments {
+    /// Write the figures here too; cost/README.md says how
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+
+    /// Leave out the filters of others, which take most of the time
+    #[arg(long)]
+    ours: bool,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        // A reader that has seen enough is no fault.
+        Err(error)
+            if error
+                .downcast_ref::<io::Error>()
+                .is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe) =>
+        {
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let mut rows = rows(&OURS)?;
+    if !arguments.ours {
+        rows.extend(self::rows(&PEERS)?);
+    }
+    let yardstick = rows
+        .iter()
+        .find(|row| row.subject.name == YARDSTICK)
+        .map_or(f64::NAN, |row| row.count.mean());
+    let mut out = io::stdout().lock();
+    table::filters(&mut out, &rows, yardstick)?;
+    writeln!(out)?;
+
+    let image = tracker::build(BuildOptions { quiet: true })?;
+    let runs = firmware::MODES
+        .iter()
+        .map(|mode| Ok((*mode, firmware::run(&image, mode)?)))
+        .collect::<Result<Vec<_>, Box<dyn Error>>>()?;
+    table::firmware(&mut out, &runs)?;
+
+    if let Some(path) = &arguments.json {
+        let json = table::json(&rows, yardstick, &runs);
+        fs::write(path, format!("{json}\n")).map_err(|error| {
+            format!(
+                "cannot write {}: {error}; name a file in a folder that exists",
+                path.display()
+            )
+        })?;
+    }
+    Ok(())
+}
+
+/// Counts all filters of a program, each on a board of its own.
+fn rows(program: &Program) -> Result<Vec<Row>, Box<dyn Error>> {
+    let image = program.build()?;
+    let image = image.as_path();
+    thread::scope(|scope| {
+        let counts: Vec<_> = program
+            .subjects
+            .iter()
+            .map(|subject| {
+                scope.spawn(move || count::count(image, subject).map_err(|error| error.to_string()))
+            })
+            .collect();
+        let counts = program.subjects.iter().zip(counts);
+        counts
+            .map(|(subject, count)| {
+                let count = count
+                    .join()
+                    .map_err(|_| format!("counting {} failed; see above", subject.name))??;
+                let error = subject.reference.orientations();
+                Ok(Row {
+                    subject: *subject,
+                    error: error.map(|reference| count.error(&reference)),
+                    count,
+                })
+            })
+            .collect()
+    })
+}
