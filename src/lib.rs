@@ -99,7 +99,7 @@ pub mod wire;
 /// Keys from the host.
 pub mod command;
 
-/// The path of a sample, from counts to lines, called once per millisecond.
+/// The path of a sample, from counts to lines, called once per sample.
 pub mod tracker;
 
 /// What a viewer makes of the quaternion: a view matrix for each eye, and a projection.

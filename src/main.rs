@@ -1,9 +1,10 @@
-//! The program on the board: a sample every millisecond, an orientation to the host a hundred times
+//! The program on the board: a thousand samples a second, an orientation to the host a hundred times
 //! a second.
 //!
-//! A timer starts each burst from the sensor and interrupts carry it in; the filter runs here, and
-//! here the core sleeps when there is nothing to do. USB has an interrupt of its own, below the
-//! sensor's and above the filter, so neither a slow host nor a busy filter delays a sample. The
+//! An alarm starts each burst just behind the sensor's data-ready, and DMA carries it in; the filter runs
+//! here, and here the core sleeps when there is nothing to do. A line goes to the USB controller in the turn
+//! that makes it. USB has an interrupt of its own, below the sensor's and above the filter, so neither a
+//! slow host nor a busy filter delays a sample. The
 //! watchdog is fed only after a sample has come in and gone through the filter.
 
 #![no_std]
@@ -40,7 +41,8 @@ fn main() -> ! {
 
 /// Tracks until the sensor is lost.
 ///
-/// One turn a millisecond; a turn that comes late finds its sample in a queue and catches up.
+/// One turn for each sample of the sensor, a thousand a second; a turn that comes late finds its sample in a queue and
+/// catches up.
 fn track(board: &mut Board, tracker: &mut Tracker<Instructions>) -> Result<Infallible, Fault> {
     let adjustment = board.start_imu()?;
     tracker.set_magnetometer(adjustment);

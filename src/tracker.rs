@@ -160,10 +160,6 @@ impl<M: Multiply> Tracker<M> {
     /// samples are. Without, they are [`SAMPLE_PERIOD`] apart.
     pub fn timed(&mut self, timing: &Timing) {
         self.timing = Some(*timing);
-        if timing.locked && self.every(PERIOD_EVERY) {
-            let period = Nanoseconds(timing.period_ns);
-            self.estimators.set_sample_period(period);
-        }
     }
 
     /// Takes a key, which has its effect with the next sample, or a line, which is answered at once.
@@ -264,6 +260,12 @@ impl<M: Multiply> Tracker<M> {
         let field = measured.result.and_then(Result::ok);
         let field = field.filter(|_| self.follows_compass());
         let field = field.map(|field| Field::new(self.calibration.field(field)));
+        if self.every(PERIOD_EVERY)
+            && let Some(timing) = self.timing
+        {
+            let period = Nanoseconds(timing.period_ns);
+            self.estimators.set_sample_period(period);
+        }
         self.track(raw, field);
         self.measure(raw, emit);
         self.tell_of_bias(emit);

@@ -48,7 +48,7 @@ impl Bias {
 
     /// From physical units, at the range the gyro was set to. Zero for what is not a number.
     pub fn new(bias: GyroBias<f32>, gyro: GyroRange) -> Self {
-        let per_dps = (f64::from(1 << 30) / gyro.max_dps()) as f32;
+        let per_dps = gyro.counts_per_dps() * 32768.0;
         let dps: [f32; 3] = bias.rate().dps().into();
         // A cast saturates.
         Self::from_parts_of_counts(dps.map(|dps| (dps * per_dps) as i32))

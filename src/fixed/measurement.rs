@@ -30,10 +30,12 @@ impl Force {
 
     /// From physical units, at the range the accelerometer was set to. Zero for what is not a number.
     pub fn new(force: SpecificForce<f32>, range: AccelRange) -> Self {
-        let per_m_per_s2 = f64::from(1 << 30) / (range.max_g() * METRES_PER_S2_PER_G);
+        const PARTS_PER_COUNT: f32 = 32768.0;
+        let per_g = f32::from(range.counts_per_g()) * PARTS_PER_COUNT;
+        let per_m_per_s2 = per_g * const { 1.0 / METRES_PER_S2_PER_G as f32 };
         let m_per_s2: [f32; 3] = force.m_per_s2().into();
         // A cast saturates.
-        Self::from_parts_of_counts(m_per_s2.map(|part| (part * per_m_per_s2 as f32) as i32))
+        Self::from_parts_of_counts(m_per_s2.map(|part| (part * per_m_per_s2) as i32))
     }
 
     /// In 2⁻¹⁵ counts; what is beyond the range of whole counts (±2¹⁵) is the end of it.
