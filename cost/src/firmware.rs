@@ -32,10 +32,10 @@ pub const MODES: [Mode; 2] = [
 ];
 
 /// Until the bias is measured and the head moves.
-const SETTLED: Ticks = 5 * SECOND;
+const SETTLED: Ticks = 4 * SECOND;
 
 /// How long is measured.
-pub const MEASURED_S: u64 = 5;
+pub const MEASURED_S: u64 = 3;
 
 /// The tracker's figures in this mode, with time passing by the pessimistic end of the band.
 ///

@@ -61,10 +61,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     writeln!(out)?;
 
     let image = tracker::build(BuildOptions { quiet: true })?;
-    let runs = firmware::MODES
-        .iter()
-        .map(|mode| Ok((*mode, firmware::run(&image, mode)?)))
-        .collect::<Result<Vec<_>, Box<dyn Error>>>()?;
+    let figures = at_once(&firmware::MODES, |mode| firmware::run(&image, mode))?;
+    let runs: Vec<_> = firmware::MODES.into_iter().zip(figures).collect();
     table::firmware(&mut out, &runs)?;
 
     if let Some(path) = &arguments.json {
@@ -79,31 +77,37 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Counts all filters of a program, each on a board of its own.
+/// Counts all filters of a program.
 fn rows(program: &Program) -> Result<Vec<Row>, Box<dyn Error>> {
     let image = program.build()?;
-    let image = image.as_path();
+    let counts = at_once(program.subjects, |subject| count::count(&image, subject))?;
+    let subjects = program.subjects.iter().zip(counts);
+    Ok(subjects
+        .map(|(subject, count)| {
+            let reference = subject.reference.orientations();
+            Row {
+                subject: *subject,
+                error: reference.map(|reference| count.error(&reference)),
+                count,
+            }
+        })
+        .collect())
+}
+
+/// Does `work` with each of these, each on a board of its own and so on a thread of its own.
+fn at_once<T: Sync, R: Send>(
+    all: &[T],
+    work: impl Fn(&T) -> Result<R, Box<dyn Error>> + Sync,
+) -> Result<Vec<R>, Box<dyn Error>> {
+    let work = &work;
     thread::scope(|scope| {
-        let counts: Vec<_> = program
-            .subjects
+        let running: Vec<_> = all
             .iter()
-            .map(|subject| {
-                scope.spawn(move || count::count(image, subject).map_err(|error| error.to_string()))
-            })
+            .map(|one| scope.spawn(move || work(one).map_err(|error| error.to_string())))
             .collect();
-        let counts = program.subjects.iter().zip(counts);
-        counts
-            .map(|(subject, count)| {
-                let count = count
-                    .join()
-                    .map_err(|_| format!("counting {} failed; see above", subject.name))??;
-                let error = subject.reference.orientations();
-                Ok(Row {
-                    subject: *subject,
-                    error: error.map(|reference| count.error(&reference)),
-                    count,
-                })
-            })
+        running
+            .into_iter()
+            .map(|thread| Ok(thread.join().map_err(|_| "a board failed; see above")??))
             .collect()
     })
 }
