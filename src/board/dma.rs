@@ -109,8 +109,10 @@ impl Dma {
     #[inline(always)]
     pub fn put(&mut self, at: usize, byte: u8) {
         let place = RECEIVED.0.get().cast::<u8>();
-        // SAFETY: within RECEIVED, whose other user, the controller, is not at this place.
-        unsafe { place.add(at.min(CAPACITY - 1)).write_volatile(byte) }
+        // SAFETY: within RECEIVED.
+        let place = unsafe { place.add(at.min(CAPACITY - 1)) };
+        // SAFETY: the other user of RECEIVED, the controller, is not at this place.
+        unsafe { place.write_volatile(byte) }
     }
 
     /// What has come in, once the transfer is over.

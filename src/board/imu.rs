@@ -1,6 +1,10 @@
 //! The sensor on its bus: set up while the program waits, sampled by interrupt ever after
 //! (`sampling`).
 
+mod frames;
+
+mod job;
+
 mod reader;
 
 mod sampling;

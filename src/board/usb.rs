@@ -9,6 +9,7 @@ mod bus;
 mod descriptors;
 mod endpoints;
 mod outbox;
+mod shortcuts;
 
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -99,7 +100,7 @@ impl Usb {
     }
 
     /// Sends a frame of at most 255 bytes, in one packet if it has at most 63, or drops and counts it.
-    pub fn send(&mut self, frame: impl AsRef<[u8]>) {
+    pub fn send(&mut self, frame: &(impl AsRef<[u8]> + ?Sized)) {
         self.send_bytes(frame.as_ref());
     }
 

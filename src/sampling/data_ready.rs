@@ -14,7 +14,7 @@
 //!                       │                    ·► edge         ·► edge
 //! ```
 //!
-//! How much earlier ([`DataReady::slide`]) follows from how well the period is known: 1 % at first, and with every edge
+//! How much earlier follows from how well the period is known: 1 % at first, and with every edge
 //! better, down to [`FINEST`]. At that rate four edges a second keep the loop in step with an oscillator that warms up.
 //! If no edge comes for long, the period is less than was thought; then the steps double until one does.
 
@@ -355,6 +355,6 @@ impl DataReady {
     fn period_ns(&self) -> u32 {
         // Nanoseconds in 1/256 tick, with 24 bits behind the point.
         let unit = u64::from((1000 << 16) / self.ticks_per_us);
-        (u64::from(self.period) * unit >> 24) as u32
+        ((u64::from(self.period) * unit) >> 24) as u32
     }
 }

@@ -15,17 +15,19 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use heapless::spsc::Producer;
-use vrduino::imu::magnetometer::polling::{self, ANSWER_LEN, Polling, Request};
+use vrduino::imu::magnetometer::polling::{ANSWER_LEN, Loss, Polling};
 use vrduino::imu::{ADDRESS, magnetometer};
 use vrduino::sampling::data_ready::{DataReady, Early};
 use vrduino::sampling::{Lock, Timing};
-use vrduino::sensor::{BURST_LEN, BURST_START, RAW_DATA_READY};
+use vrduino::sensor::magnetometer::RawField;
+use vrduino::sensor::{BURST_LEN, RAW_DATA_READY};
 
 use super::super::clock;
 use super::super::dma::Dma;
 use super::super::i2c::{Error, I2c};
 use super::super::timer::{self, Alarm, TICKS_PER_US};
-use super::super::usb;
+use super::frames;
+use super::job::Job;
 use super::sampling::{Counts, Outcome, Sampled};
 
 /// Between the alarms while nothing is sampled.
@@ -37,11 +39,6 @@ const PAUSE: u32 = 10 * TICKS_PER_US;
 const FIELD: u32 = 320 * TICKS_PER_US;
 /// From a START to the moment at which the status is read, until it was measured: three addresses and registers.
 const LEAD: u32 = 80 * TICKS_PER_US;
-/// From a START to the packet at its endpoint: addresses, burst, filter and frame. Locked on USB, that is how long ahead
-/// of the host's next frame a read begins.
-const AHEAD: u32 = 510 * TICKS_PER_US;
-/// Frames without word of which the host counts as away.
-const FRAMES_MISSED: u32 = 5;
 /// Alarms after which a read that does not end is given up.
 const STUCK_ALARMS: u8 = 3;
 
@@ -50,39 +47,6 @@ const STUCK_ALARMS: u8 = 3;
 // SAFETY: no other item has this name.
 #[unsafe(export_name = "vrduino_data_ready_us")]
 static DATA_READY: AtomicU32 = AtomicU32::new(0);
-
-/// What the bus is used for.
-#[derive(Clone, Copy)]
-enum Job {
-    Sample,
-    Field(Request),
-}
-
-impl Job {
-    #[inline(always)]
-    fn address(self) -> u8 {
-        match self {
-            Job::Sample => ADDRESS,
-            Job::Field(_) => magnetometer::ADDRESS,
-        }
-    }
-
-    #[inline(always)]
-    fn register(self) -> u8 {
-        match self {
-            Job::Sample => BURST_START,
-            Job::Field(_) => polling::START,
-        }
-    }
-
-    #[inline(always)]
-    fn length(self) -> usize {
-        match self {
-            Job::Sample => BURST_LEN,
-            Job::Field(request) => request.length(),
-        }
-    }
-}
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Step {
@@ -124,7 +88,7 @@ pub struct Reader {
     magnetometer: Option<Polling>,
     results: Producer<'static, Sampled>,
     /// For the next sample.
-    field: Option<Result<vrduino::sensor::magnetometer::RawField, polling::Loss>>,
+    field: Option<Result<RawField, Loss>>,
     stuck_alarms: u8,
     /// What was counted.
     pub counts: Counts,
@@ -404,7 +368,7 @@ impl Reader {
     fn until_next(&self) -> u32 {
         let now = timer::now();
         if self.lock == Lock::Usb
-            && let Some(wait) = until_ahead_of_frame(now)
+            && let Some(wait) = frames::until_ahead(now, PAUSE)
         {
             return wait;
         }
@@ -438,15 +402,4 @@ impl Reader {
             self.field = Some(Err(loss));
         }
     }
-}
-
-/// Ticks until [`AHEAD`] of a frame of the host, if there are frames.
-#[inline(never)]
-fn until_ahead_of_frame(now: u32) -> Option<u32> {
-    let since = now.wrapping_sub(usb::last_frame());
-    if since > FRAMES_MISSED * TICK {
-        return None;
-    }
-    let wait = (2 * TICK - AHEAD - since % TICK) % TICK;
-    Some(if wait < PAUSE { wait + TICK } else { wait })
 }

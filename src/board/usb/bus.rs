@@ -23,7 +23,7 @@ use super::buffers::{self, ENDPOINTS, PACKET, descriptor};
 use super::endpoints::{Endpoints, Receive, Transmit};
 
 /// ISTAT flags, cleared by writing them as 1.
-mod flag {
+pub(super) mod flag {
     pub const STALL: u8 = 1 << 7;
     pub const RESUME: u8 = 1 << 5;
     pub const SLEEP: u8 = 1 << 4;
@@ -34,11 +34,11 @@ mod flag {
 }
 
 /// Interrupts while the bus is in use, and while it is suspended.
-const AWAKE: u8 = flag::STALL | flag::SLEEP | flag::TOKEN | flag::ERROR | flag::RESET;
+pub(super) const AWAKE: u8 = flag::STALL | flag::SLEEP | flag::TOKEN | flag::ERROR | flag::RESET;
 const SUSPENDED: u8 = flag::RESUME | flag::START_OF_FRAME | flag::RESET;
 
 /// STAT.TX: the token was an IN.
-const TO_HOST: u8 = 1 << 3;
+pub(super) const TO_HOST: u8 = 1 << 3;
 
 /// Completed tokens that STAT can hold.
 const COMPLETED: usize = 4;
@@ -59,14 +59,14 @@ const NO_CONTROL: u8 = 1 << 4;
 pub struct Bus {
     state: UnsafeCell<Endpoints>,
     /// Frames are followed.
-    frames: AtomicBool,
+    pub(super) frames: AtomicBool,
 }
 
 // SAFETY: all of this runs in the USB interrupt, or in the main program while that is masked; and `with`, the only one
 // to reach for the state, does not call itself.
 unsafe impl Sync for Bus {}
 
-fn registers() -> &'static pac::usb0::RegisterBlock {
+pub(super) fn registers() -> &'static pac::usb0::RegisterBlock {
     // SAFETY: the controller is always there, and Bus::new has taken the only handle on it.
     unsafe { &*pac::Usb0::PTR }
 }
@@ -87,83 +87,25 @@ impl Bus {
         }
     }
 
-    fn with<T>(&self, work: impl FnOnce(&mut Endpoints) -> T) -> T {
+    pub(super) fn with<T>(&self, work: impl FnOnce(&mut Endpoints) -> T) -> T {
         // SAFETY: see above.
         work(unsafe { &mut *self.state.get() })
     }
 
     /// Interrupts while the bus is in use.
-    fn awake(&self) -> u8 {
+    pub(super) fn awake(&self) -> u8 {
         match self.frames.load(Ordering::Relaxed) {
             true => AWAKE | flag::START_OF_FRAME,
             false => AWAKE,
         }
     }
 
-    /// Interrupts at the start of every frame, or no longer.
-    pub fn follow_frames(&self, on: bool) {
-        self.frames.store(on, Ordering::Relaxed);
-        // A suspended bus has no frames; it is told when it wakes up.
-        if registers().inten().read().bits() & flag::TOKEN != 0 {
-            self.interrupts(self.awake());
-        }
-    }
-
-    /// Whether a frame has begun, on a bus in use whose frames are followed.
-    #[inline(always)]
-    pub fn take_frame(&self) -> bool {
-        if !self.frames.load(Ordering::Relaxed) {
-            return false;
-        }
-        let enabled = registers().inten().read().bits();
-        let flags = registers().istat().read().bits();
-        let begun = enabled & flag::TOKEN != 0 && flags & flag::START_OF_FRAME != 0;
-        if begun {
-            self.clear(flag::START_OF_FRAME);
-        }
-        begun
-    }
-
-    /// Whether nothing has happened.
-    pub fn is_quiet(&self) -> bool {
-        registers().istat().read().bits() & (AWAKE | flag::RESUME) == 0
-    }
-
-    /// Whether nothing has happened but that a packet of a data endpoint has gone to the host, which then is taken
-    /// note of.
-    #[inline(always)]
-    pub fn take_sent(&self) -> bool {
-        let flags = registers().istat().read().bits();
-        if flags & (AWAKE | flag::RESUME) != flag::TOKEN {
-            return false;
-        }
-        let status = registers().stat().read().bits();
-        let data_endpoint = usize::from(status >> 4) != 0;
-        if !data_endpoint || status & TO_HOST == 0 {
-            return false;
-        }
-        self.sent(status);
-        self.clear(flag::TOKEN);
-        true
-    }
-
-    fn sent(&self, status: u8) {
-        let (number, bank) = (usize::from(status >> 4), usize::from(status >> 2 & 1));
-        self.with(|state| {
-            if let Some(endpoint) = state.transmit.get_mut(number) {
-                endpoint.busy = false;
-                endpoint.data1 = !endpoint.data1;
-                endpoint.bank = bank ^ 1;
-            }
-        });
-    }
-
-    fn clear(&self, flags: u8) {
+    pub(super) fn clear(&self, flags: u8) {
         // SAFETY: ISTAT takes any value; it clears the flags written as 1.
         registers().istat().write(|w| unsafe { w.bits(flags) });
     }
 
-    fn interrupts(&self, flags: u8) {
+    pub(super) fn interrupts(&self, flags: u8) {
         // SAFETY: INTEN takes any value.
         registers().inten().write(|w| unsafe { w.bits(flags) });
     }
