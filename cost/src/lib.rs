@@ -3,6 +3,8 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod fusion;
+
 use vrduino::fixed::complementary::{Bias, Complementary, Nanoseconds, Parameters};
 use vrduino::fixed::multiply::Multiply;
 use vrduino::orientation::{DEFAULT_TIME_CONSTANT, TimeConstant};
