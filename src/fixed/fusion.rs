@@ -128,9 +128,9 @@ impl<M: Multiply> Fusion<M> {
         if !self.started {
             self.start(force);
         }
+        self.rest.add(gyro, force);
         self.rate = Vector::from_counts(gyro) - self.bias.counts();
         self.inclination.update(self.rate, force);
-        self.rest.add(gyro, force);
         if let Some(field) = field {
             self.update_heading(field);
         }

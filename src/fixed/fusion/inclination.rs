@@ -113,38 +113,52 @@ impl<M: Multiply> Inclination<M> {
     /// 4. q ← (1, c/2) q, of unit length.
     #[inline(always)]
     pub fn update(&mut self, rate: Vector<M, 15>, force: Vector<M, 15>) {
-        let Coefficients {
-            half_angle_per_count,
-            low_pass,
-            correction,
-            start,
-            ..
-        } = self.coefficients;
-        let h: Vector<M, 32> = self.remainders.half_angle(rate, half_angle_per_count);
+        let h: Vector<M, 32> = self
+            .remainders
+            .half_angle(rate, self.coefficients.half_angle_per_count);
         let h_squared = h.norm_squared();
         let sine = h.grown(sine_excess(h_squared));
         let q_omega = self
             .orientation
             .rotated_in_body(cosine_excess(h_squared), sine);
         let Vector { x, z, .. } = q_omega.in_world(force);
-        let (c_x, c_z) = if self.age < start {
-            self.starting(x, z)
+        let (c_x, c_z) = if self.is_settled() {
+            self.correction(x, z)
         } else {
-            let [b_x, b_z] = self.error;
-            let (b_x, b_z) = (b_x.towards(x, low_pass), b_z.towards(z, low_pass));
-            self.error = [b_x, b_z];
-            (correction.times(b_x.upper()), correction.times(b_z.upper()))
+            self.correction_of_the_start(x, z)
         };
-        let tilted = q_omega.levelled_a_little(c_x, c_z);
-        self.orientation = match tilted.normalised_nearby() {
-            Some(orientation) => orientation,
-            None => normalised_anywhere(tilted),
-        };
+        self.orientation = q_omega.levelled_a_little(c_x, c_z);
+        match self.orientation.normalised_closely() {
+            Some(orientation) => self.orientation = orientation,
+            None => self.normalise(),
+        }
+    }
+
+    /// After a correction of the start.
+    #[cold]
+    #[inline(never)]
+    fn normalise(&mut self) {
+        let nearby = self.orientation.normalised_nearby();
+        // A length of ½ to 2 is never left by one sample.
+        if let Some(orientation) = nearby.or_else(|| self.orientation.normalised_anywhere()) {
+            self.orientation = orientation;
+        }
+    }
+
+    /// ½ c.
+    #[inline(always)]
+    fn correction(&mut self, x: Q<M, 12>, z: Q<M, 12>) -> (Q<M, 32>, Q<M, 32>) {
+        let low_pass = self.coefficients.low_pass;
+        let [b_x, b_z] = self.error;
+        let (b_x, b_z) = (b_x.towards(x, low_pass), b_z.towards(z, low_pass));
+        self.error = [b_x, b_z];
+        let correction = self.coefficients.correction;
+        (correction.times(b_x.upper()), correction.times(b_z.upper()))
     }
 
     /// ½ e/n.
     #[inline(always)]
-    fn starting(&mut self, x: Q<M, 12>, z: Q<M, 12>) -> (Q<M, 32>, Q<M, 32>) {
+    fn correction_of_the_start(&mut self, x: Q<M, 12>, z: Q<M, 12>) -> (Q<M, 32>, Q<M, 32>) {
         self.age += 1;
         let share: Q<M, 31> = per(NonZeroU32::new(self.age).unwrap_or(NonZeroU32::MIN));
         let bits = self.coefficients.bits_per_g;
@@ -189,12 +203,4 @@ impl<M: Multiply> Inclination<M> {
         self.error = [Wide::from_bits(0); 2];
         self.age = self.coefficients.start;
     }
-}
-
-/// After a correction of the start, or a turn by more than ten degrees in a sample.
-#[cold]
-#[inline(never)]
-fn normalised_anywhere<M: Multiply>(q: Quaternion<M>) -> Quaternion<M> {
-    // A length of ½ to 2 is never left by one sample.
-    q.normalised_anywhere().unwrap_or(Quaternion::IDENTITY)
 }
