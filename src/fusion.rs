@@ -120,9 +120,10 @@ impl<T: RealField + Copy> Fusion<T> {
         }
         self.step = (self.step + 1) % DECIMATION;
         match self.step {
-            0 => self.rest.look(self.bias.at_rest()),
-            1 => self.follow_rest(),
-            7 => self.follow_tilt(),
+            0 => self.rest.look_at_rate(self.bias.at_rest()),
+            1 => self.rest.look_at_force(),
+            2 => self.follow_rest(),
+            3 => self.follow_tilt(),
             _ => {}
         }
     }

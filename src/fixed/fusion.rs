@@ -118,35 +118,45 @@ impl<M: Multiply> Fusion<M> {
     /// One sample with the gyro's bias still in it, body frame; every so often with a field.
     #[inline(always)]
     pub fn update(&mut self, sample: &RawSample, field: Option<Field>) {
-        self.update_corrected(sample.gyro, Force::from_counts(sample.accel), field);
+        let force = || Force::from_counts(sample.accel);
+        self.update_with(sample.gyro, force, field);
     }
 
     /// The same with the accelerometer corrected.
     #[inline(always)]
-    pub fn update_corrected(&mut self, gyro: [i16; 3], force: Force, field: Option<Field>) {
-        let force = force.vector();
+    pub fn update_corrected(&mut self, gyro: [i16; 3], force: &Force, field: Option<Field>) {
+        self.update_with(gyro, || *force, field);
+    }
+
+    /// The force is asked for when it is needed: there are not registers enough to keep it.
+    #[inline(always)]
+    fn update_with(&mut self, gyro: [i16; 3], force: impl Fn() -> Force, field: Option<Field>) {
         if !self.started {
-            self.start(force);
+            self.start(force());
         }
-        self.rest.add(gyro, force);
+        self.rest.add_rate(gyro);
         self.rate = Vector::from_counts(gyro) - self.bias.counts();
-        self.inclination.update(self.rate, force);
+        let turned = self.inclination.turned(self.rate);
+        let force = force().vector();
+        self.rest.add_force(force);
+        self.inclination.correct(turned, force);
         if let Some(field) = field {
             self.update_heading(field);
         }
         self.step = (self.step + 1) % DECIMATION;
         match self.step {
-            0 => self.look(),
-            1 => self.follow_rest(),
-            7 => self.follow_tilt(),
+            0 => self.look_at_rate(),
+            1 => self.look_at_force(),
+            2 => self.follow_rest(),
+            3 => self.follow_tilt(),
             _ => {}
         }
     }
 
     #[cold]
     #[inline(never)]
-    fn start(&mut self, force: Vector<M, 15>) {
-        self.inclination.level(force);
+    fn start(&mut self, force: Force) {
+        self.inclination.level(force.vector());
         self.started = true;
     }
 
@@ -164,10 +174,16 @@ impl<M: Multiply> Fusion<M> {
         }
     }
 
-    /// At the last block.
+    /// At the last block: its rate.
     #[inline(never)]
-    fn look(&mut self) {
-        self.rest.look(self.bias.known());
+    fn look_at_rate(&mut self) {
+        self.rest.look_at_rate(self.bias.known());
+    }
+
+    /// And its force.
+    #[inline(never)]
+    fn look_at_force(&mut self) {
+        self.rest.look_at_force();
     }
 
     /// The verdict on it, and what that means for the bias.

@@ -88,12 +88,13 @@ impl<T: RealField + Copy> Integral<T> {
     /// Until the first rest nothing is known, so the gain begins high and falls as 1/(1 s + t):
     /// k_i max(1, t₀/(1 s + t)). A rest tells more of the bias than any motion: after one it is k_i.
     pub fn of_tilt(&mut self, inclination: &Inclination<T>, source: Source) -> Option<Vector3<T>> {
-        self.age = self.age.saturating_add(DECIMATION);
+        let age = self.age;
+        self.age = age.saturating_add(DECIMATION);
         if !inclination.is_settled() {
             return None;
         }
         let [x, z] = self.follow(inclination);
-        let gain = self.tilt_gain(source);
+        let gain = self.tilt_gain(source, age);
         let largest: T = convert(LARGEST_ERROR);
         let error = inclination
             .error()
@@ -127,7 +128,7 @@ impl<T: RealField + Copy> Integral<T> {
         axes
     }
 
-    fn tilt_gain(&self, source: Source) -> T {
+    fn tilt_gain(&self, source: Source, age: u32) -> T {
         let Coefficients {
             tilt,
             tilt_start,
@@ -137,7 +138,7 @@ impl<T: RealField + Copy> Integral<T> {
         if source != Source::Unmeasured {
             return tilt;
         }
-        let time = self.age.saturating_add(tilt_second);
+        let time = age.saturating_add(tilt_second);
         size(tilt * (scalar::<T>(tilt_start) / scalar(time)).max(T::one()))
     }
 

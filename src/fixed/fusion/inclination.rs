@@ -105,32 +105,40 @@ impl<M: Multiply> Inclination<M> {
             half_angle_per_count(rates.ranges.gyro, rates.sample);
     }
 
-    /// One sample, body frame, counts, bias removed.
+    /// The first half of a sample, with the rate (counts, body frame, bias removed):
     ///
-    /// 1. q ← q exp(ωΔt/2);
-    /// 2. a ← q f q⁻¹, and its error e of x and z;
-    /// 3. b ← b + k_l(e − b), and of that c = k_c b; in the first second c = e/n instead, and b is 0;
-    /// 4. q ← (1, c/2) q, of unit length.
+    /// 1. q_ω = q exp(ωΔt/2).
     #[inline(always)]
-    pub fn update(&mut self, rate: Vector<M, 15>, force: Vector<M, 15>) {
+    pub fn turned(&mut self, rate: Vector<M, 15>) -> Quaternion<M> {
         let h: Vector<M, 32> = self
             .remainders
             .half_angle(rate, self.coefficients.half_angle_per_count);
         let h_squared = h.norm_squared();
         let sine = h.grown(sine_excess(h_squared));
-        let q_omega = self
-            .orientation
-            .rotated_in_body(cosine_excess(h_squared), sine);
+        self.orientation
+            .rotated_in_body(cosine_excess(h_squared), sine)
+    }
+
+    /// The second half, with the force (counts, body frame):
+    ///
+    /// 2. a ← q_ω f q_ω⁻¹, and its error e of x and z;
+    /// 3. b ← b + k_l(e − b), and of that c = k_c b; in the first second c = e/n instead, and b is 0;
+    /// 4. q ← (1, c/2) q_ω, of unit length.
+    #[inline(always)]
+    pub fn correct(&mut self, q_omega: Quaternion<M>, force: Vector<M, 15>) {
         let Vector { x, z, .. } = q_omega.in_world(force);
         let (c_x, c_z) = if self.is_settled() {
             self.correction(x, z)
         } else {
             self.correction_of_the_start(x, z)
         };
-        self.orientation = q_omega.levelled_a_little(c_x, c_z);
-        match self.orientation.normalised_closely() {
+        let tilted = q_omega.levelled_a_little(c_x, c_z);
+        match tilted.normalised_closely() {
             Some(orientation) => self.orientation = orientation,
-            None => self.normalise(),
+            None => {
+                self.orientation = tilted;
+                self.normalise();
+            }
         }
     }
 

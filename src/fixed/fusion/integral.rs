@@ -3,7 +3,7 @@
 
 use super::super::multiply::Multiply;
 use super::super::number::{Q, Wide};
-use super::super::vector::{Vector, WideVector};
+use super::super::vector::Vector;
 use super::inclination::Inclination;
 use super::parameters::{Rates, samples, seconds, weight};
 use crate::fusion::integral::{LARGEST_ERROR, LARGEST_HEADING_ERROR, SECOND};
@@ -17,7 +17,9 @@ use core::num::NonZeroU32;
 pub struct Integral<M> {
     coefficients: Coefficients<M>,
     /// The world's x and z as the body sees them, low-passed like the error of tilt: the reference says why.
-    axes: Option<[WideVector<M, 59>; 2]>,
+    axes: [Vector<M, 27>; 2],
+    /// Whether there are none yet.
+    fresh: bool,
     /// What the last bit of an error times its gain has left so far: of tilt about x and z, and of heading.
     remainders: [u32; 3],
     /// Samples since the start, counted in eights.
@@ -111,7 +113,8 @@ impl<M: Multiply> Integral<M> {
     pub fn new(parameters: &Parameters<f32>, rates: &Rates) -> Self {
         Self {
             coefficients: Coefficients::new(parameters, rates),
-            axes: None,
+            axes: [Vector::ZERO; 2],
+            fresh: true,
             remainders: [1 << 31; 3],
             age: 0,
             fields: 0,
@@ -130,12 +133,13 @@ impl<M: Multiply> Integral<M> {
         inclination: &Inclination<M>,
         source: Source,
     ) -> Option<[(Q<M, 20>, Vector<M, 27>); 2]> {
-        self.age = self.age.saturating_add(DECIMATION);
+        let age = self.age;
+        self.age = age.saturating_add(DECIMATION);
         if !inclination.is_settled() {
             return None;
         }
         let [axis_x, axis_z] = self.follow(inclination);
-        let gain = self.tilt_gain(source);
+        let gain = self.tilt_gain(source, age);
         let largest = self.coefficients.largest;
         let [x, z] = inclination.error().map(|part| part.limited(largest));
         let [rest_x, rest_z, _] = &mut self.remainders;
@@ -164,19 +168,30 @@ impl<M: Multiply> Integral<M> {
 
     #[inline(always)]
     fn follow(&mut self, inclination: &Inclination<M>) -> [Vector<M, 27>; 2] {
+        if self.fresh {
+            self.begin(inclination);
+        }
         let q = inclination.orientation();
-        let [x, z] = [q.world_x(), q.world_z()];
-        let [before_x, before_z] = self
-            .axes
-            .unwrap_or_else(|| [x, z].map(WideVector::from_upper));
         let low_pass = self.coefficients.low_pass;
-        let axes = [before_x.towards(x, low_pass), before_z.towards(z, low_pass)];
-        self.axes = Some(axes);
-        axes.map(WideVector::upper)
+        let [x, z] = self.axes;
+        self.axes = [
+            x.towards(q.world_x(), low_pass),
+            z.towards(q.world_z(), low_pass),
+        ];
+        self.axes
+    }
+
+    /// The first axes are what the low-pass begins with.
+    #[cold]
+    #[inline(never)]
+    fn begin(&mut self, inclination: &Inclination<M>) {
+        let q = inclination.orientation();
+        self.axes = [q.world_x(), q.world_z()];
+        self.fresh = false;
     }
 
     #[inline(always)]
-    fn tilt_gain(&self, source: Source) -> Q<M, 34> {
+    fn tilt_gain(&self, source: Source, age: u32) -> Q<M, 34> {
         let Coefficients {
             tilt,
             tilt_start,
@@ -186,7 +201,7 @@ impl<M: Multiply> Integral<M> {
         if source != Source::Unmeasured {
             return tilt;
         }
-        let time = NonZeroU32::new(self.age.saturating_add(tilt_second));
+        let time = NonZeroU32::new(age.saturating_add(tilt_second));
         let start = tilt_start.over(time.unwrap_or(NonZeroU32::MIN));
         Q::from_bits(tilt.bits().max(start))
     }
