@@ -121,10 +121,18 @@ impl<T: RealField + Copy> Fusion<T> {
         self.step = (self.step + 1) % DECIMATION;
         match self.step {
             0 => self.rest.look_at_rate(self.bias.at_rest()),
-            1 => self.rest.look_at_force(),
-            2 => self.follow_rest(),
+            1 => self.look_at_force(),
+            2 if self.is_still() => self.follow_rest(),
             3 => self.follow_tilt(),
             _ => {}
+        }
+    }
+
+    /// With the force there is a verdict on the last block.
+    fn look_at_force(&mut self) {
+        self.rest.look_at_force();
+        if let Motion::Moving { .. } = self.rest.judge() {
+            self.bias.moves();
         }
     }
 
@@ -140,16 +148,19 @@ impl<T: RealField + Copy> Fusion<T> {
         }
     }
 
-    /// The verdict on the last block, and what it means for the bias.
+    /// What a rest means for the bias.
     fn follow_rest(&mut self) {
-        match self.rest.judge() {
+        match self.motion() {
             Motion::Still { samples } if samples <= DECIMATION => {
                 let (rate, blocks) = self.rest.calm_rate();
                 self.bias.begins_to_rest(rate, blocks);
             }
-            Motion::Still { .. } => self.bias.rests(self.rest.block_rate()),
-            Motion::Moving { .. } => self.bias.moves(),
+            _ => self.bias.rests(self.rest.block_rate()),
         }
+    }
+
+    fn is_still(&self) -> bool {
+        matches!(self.motion(), Motion::Still { .. })
     }
 
     /// What the tilt's error means for it.
@@ -162,7 +173,7 @@ impl<T: RealField + Copy> Fusion<T> {
 
     /// At rest the mean knows better.
     fn shift_bias(&mut self, error: Vector3<T>) {
-        if matches!(self.motion(), Motion::Moving { .. }) {
+        if !self.is_still() {
             self.bias.shift(error);
         }
     }
@@ -228,7 +239,7 @@ impl<T: RealField + Copy> Fusion<T> {
     /// At rest: how fast the orientation still turns, that is the heading's drift, in the body's axes.
     /// None on the move, when nobody can tell.
     pub fn residual(&self) -> Option<AngularRate<T>> {
-        matches!(self.motion(), Motion::Still { .. })
+        self.is_still()
             .then(|| AngularRate::from_rad_per_s(self.rest.mean_rate() - self.bias.rad_per_s()))
     }
 

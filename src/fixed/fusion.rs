@@ -147,7 +147,7 @@ impl<M: Multiply> Fusion<M> {
         match self.step {
             0 => self.look_at_rate(),
             1 => self.look_at_force(),
-            2 => self.follow_rest(),
+            2 if self.is_still() => self.follow_rest(),
             3 => self.follow_tilt(),
             _ => {}
         }
@@ -177,26 +177,34 @@ impl<M: Multiply> Fusion<M> {
     /// At the last block: its rate.
     #[inline(never)]
     fn look_at_rate(&mut self) {
+        self.inclination.normalise();
         self.rest.look_at_rate(self.bias.known());
     }
 
-    /// And its force.
+    /// And its force, with which there is a verdict.
     #[inline(never)]
     fn look_at_force(&mut self) {
         self.rest.look_at_force();
+        if let Motion::Moving { .. } = self.rest.judge() {
+            self.bias.moves();
+        }
     }
 
-    /// The verdict on it, and what that means for the bias.
+    /// What a rest means for the bias.
     #[inline(never)]
     fn follow_rest(&mut self) {
-        match self.rest.judge() {
+        match self.motion() {
             Motion::Still { samples } if samples <= DECIMATION => {
                 let (rate, blocks) = self.rest.calm_rate();
                 self.bias.begins_to_rest(rate, blocks);
             }
-            Motion::Still { .. } => self.bias.rests(self.rest.block_rate()),
-            Motion::Moving { .. } => self.bias.moves(),
+            _ => self.bias.rests(self.rest.block_rate()),
         }
+    }
+
+    #[inline(always)]
+    fn is_still(&self) -> bool {
+        matches!(self.motion(), Motion::Still { .. })
     }
 
     /// What the tilt's error means for it.
@@ -211,7 +219,7 @@ impl<M: Multiply> Fusion<M> {
     /// At rest the mean knows better.
     #[inline(always)]
     fn shift_bias<const A: usize>(&mut self, errors: [(Q<M, 20>, Vector<M, 27>); A]) {
-        if matches!(self.motion(), Motion::Moving { .. }) {
+        if !self.is_still() {
             self.bias.shift(errors);
         }
     }
@@ -299,7 +307,7 @@ impl<M: Multiply> Fusion<M> {
     /// None on the move, when nobody can tell.
     pub fn residual(&self) -> Option<AngularRate<f32>> {
         let residual = self.rest.mean_rate() - self.bias.counts();
-        matches!(self.motion(), Motion::Still { .. }).then(|| self.bias.physical(residual))
+        self.is_still().then(|| self.bias.physical(residual))
     }
 
     /// What the compass is worth at the moment.

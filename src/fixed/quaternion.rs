@@ -186,18 +186,6 @@ impl<M: Multiply> Quaternion<M> {
         excess.plus(w, w).plus(x, x).plus(y, y).plus(z, z).upper()
     }
 
-    /// q / |q|, within 3e-9 of unit length, if |q|² is within 6e-5 of 1: (1 + e)^−½ = 1 − e/2 + 3e²/8 − ….
-    #[inline(always)]
-    pub fn normalised_closely(self) -> Option<Self> {
-        let excess = self.excess();
-        let small = const { Q::<M, 28>::constant(1.0 / 16384.0).bits() };
-        // Half of it: read with one more fraction bit.
-        let share = -excess.read_as::<29>().finer::<32>();
-        (-small..small)
-            .contains(&excess.bits())
-            .then(|| self.grown(share))
-    }
-
     /// q / |q|, within 5e-9 of unit length, if |q|² is within 1/128 of 1.
     #[inline(always)]
     pub fn normalised_nearby(self) -> Option<Self> {

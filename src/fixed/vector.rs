@@ -77,6 +77,14 @@ impl<M: Multiply, const BITS: u32> Vector<M, BITS> {
             .plus(self.z, self.z)
     }
 
+    /// The scalar product.
+    #[inline(always)]
+    pub fn dot<const B: u32, const OUT: u32>(self, other: Vector<M, B>) -> Q<M, OUT> {
+        Q::product(self.x, other.x)
+            .plus(self.y, other.y)
+            .plus(self.z, other.z)
+    }
+
     /// By this share of the way to `target`: one step of a low-pass of first order, rounded.
     #[inline(always)]
     pub fn towards(self, target: Self, share: Q<M, 32>) -> Self {

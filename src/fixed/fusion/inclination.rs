@@ -20,7 +20,7 @@ pub struct Inclination<M> {
     remainders: Remainders,
     orientation: Quaternion<M>,
     /// b, in counts of the accelerometer, as x and z of the force in the world: b = (−z, x).
-    error: [Wide<M, 44>; 2],
+    error: [Wide<M, 42>; 2],
     /// Samples since the start.
     age: u32,
 }
@@ -38,17 +38,17 @@ struct Coefficients<M> {
     start: u32,
 }
 
-/// A number as Q52 after a shift to the left.
+/// A number as Q54 after a shift to the left.
 #[derive(Clone, Copy, Debug)]
 struct Scaled<M> {
-    bits: Q<M, 52>,
+    bits: Q<M, 54>,
     shift: u32,
 }
 
 impl<M: Multiply> Scaled<M> {
     fn new(value: f32) -> Self {
         let (mut value, mut shift) = (value, 0);
-        while value >= (1.0 / (1 << 21) as f32) && shift < 12 {
+        while value >= (1.0 / (1 << 23) as f32) && shift < 16 {
             value *= 0.5;
             shift += 1;
         }
@@ -59,14 +59,15 @@ impl<M: Multiply> Scaled<M> {
     }
 
     #[inline(always)]
-    fn times(self, counts: Q<M, 12>) -> Q<M, 32> {
+    fn times(self, counts: Q<M, 10>) -> Q<M, 32> {
         let product: Q<M, 32> = Q::product(counts, self.bits);
         Q::from_bits(product.bits() << self.shift)
     }
 }
 
-/// Most that is corrected in a sample of a force of 16 g on each axis, as a half angle, rad.
-const LARGEST_CORRECTION: f32 = 0.49;
+/// Most that is corrected in a sample of a force at the end of its range on each axis, as a half angle, rad: eight
+/// such leave a quaternion that its format holds.
+const LARGEST_CORRECTION: f32 = 0.1;
 
 impl<M: Multiply> Coefficients<M> {
     fn new(parameters: &Parameters<f32>, rates: &Rates) -> Self {
@@ -126,36 +127,39 @@ impl<M: Multiply> Inclination<M> {
     /// 4. q ← (1, c/2) q_ω, of unit length.
     #[inline(always)]
     pub fn correct(&mut self, q_omega: Quaternion<M>, force: Vector<M, 15>) {
-        let Vector { x, z, .. } = q_omega.in_world(force);
-        let (c_x, c_z) = if self.is_settled() {
-            self.correction(x, z)
+        let (x, z) = (q_omega.world_x().dot(force), q_omega.world_z().dot(force));
+        if self.is_settled() {
+            let (c_x, c_z) = self.correction(x, z);
+            self.orientation = q_omega.levelled_a_little(c_x, c_z);
         } else {
-            self.correction_of_the_start(x, z)
-        };
-        let tilted = q_omega.levelled_a_little(c_x, c_z);
-        match tilted.normalised_closely() {
-            Some(orientation) => self.orientation = orientation,
-            None => {
-                self.orientation = tilted;
-                self.normalise();
-            }
+            let (c_x, c_z) = self.correction_of_the_start(x, z);
+            self.orientation = q_omega.levelled_a_little(c_x, c_z);
+            self.normalise();
         }
     }
 
-    /// After a correction of the start.
+    /// To unit length: once in a block, for what a correction adds to the length is the square of it, less than
+    /// a millionth.
+    #[inline(always)]
+    pub fn normalise(&mut self) {
+        match self.orientation.normalised_nearby() {
+            Some(orientation) => self.orientation = orientation,
+            None => self.normalise_anywhere(),
+        }
+    }
+
     #[cold]
     #[inline(never)]
-    fn normalise(&mut self) {
-        let nearby = self.orientation.normalised_nearby();
-        // A length of ½ to 2 is never left by one sample.
-        if let Some(orientation) = nearby.or_else(|| self.orientation.normalised_anywhere()) {
+    fn normalise_anywhere(&mut self) {
+        // A length of ½ to 2 is never left in a block.
+        if let Some(orientation) = self.orientation.normalised_anywhere() {
             self.orientation = orientation;
         }
     }
 
     /// ½ c.
     #[inline(always)]
-    fn correction(&mut self, x: Q<M, 12>, z: Q<M, 12>) -> (Q<M, 32>, Q<M, 32>) {
+    fn correction(&mut self, x: Q<M, 10>, z: Q<M, 10>) -> (Q<M, 32>, Q<M, 32>) {
         let low_pass = self.coefficients.low_pass;
         let [b_x, b_z] = self.error;
         let (b_x, b_z) = (b_x.towards(x, low_pass), b_z.towards(z, low_pass));
@@ -166,14 +170,14 @@ impl<M: Multiply> Inclination<M> {
 
     /// ½ e/n.
     #[inline(always)]
-    fn correction_of_the_start(&mut self, x: Q<M, 12>, z: Q<M, 12>) -> (Q<M, 32>, Q<M, 32>) {
+    fn correction_of_the_start(&mut self, x: Q<M, 10>, z: Q<M, 10>) -> (Q<M, 32>, Q<M, 32>) {
         self.age += 1;
         let share: Q<M, 31> = per(NonZeroU32::new(self.age).unwrap_or(NonZeroU32::MIN));
         let bits = self.coefficients.bits_per_g;
         // A knock in the first samples must not turn the picture over. 1 g itself would be too large by a bit.
-        let one_g = Q::<M, 12>::from_bits((1 << (bits + 12)) - 1);
-        let half = |part: Q<M, 12>| {
-            let in_g = Q::<M, 30>::from_bits(part.limited(one_g).bits() << (18 - bits));
+        let one_g = Q::<M, 10>::from_bits((1 << (bits + 10)) - 1);
+        let half = |part: Q<M, 10>| {
+            let in_g = Q::<M, 30>::from_bits(part.limited(one_g).bits() << (20 - bits));
             Q::<M, 29>::product(in_g, share).read_as::<30>().finer()
         };
         (half(x), half(z))
@@ -187,7 +191,7 @@ impl<M: Multiply> Inclination<M> {
 
     /// b, counts, as x and z of the force in the world: how far from level the last seconds were.
     #[inline(always)]
-    pub fn error(&self) -> [Q<M, 12>; 2] {
+    pub fn error(&self) -> [Q<M, 10>; 2] {
         self.error.map(Wide::upper)
     }
 

@@ -33,7 +33,7 @@ struct Coefficients<M> {
     /// Share of the axes of now in [`DECIMATION`] samples.
     low_pass: Q<M, 32>,
     /// Largest error of tilt, counts of the accelerometer.
-    largest: Q<M, 12>,
+    largest: Q<M, 10>,
     /// Gain in [`DECIMATION`] samples, counts of the gyro per count of the accelerometer, as Q34.
     tilt: Q<M, 34>,
     /// That of the start, times samples.
