@@ -131,15 +131,16 @@ impl<M: Multiply> Fusion<M> {
     /// The force is asked for when it is needed: there are not registers enough to keep it.
     #[inline(always)]
     fn update_with(&mut self, gyro: [i16; 3], force: impl Fn() -> Force, field: Option<Field>) {
-        if !self.started {
-            self.start(force());
-        }
         self.rest.add_rate(gyro);
         self.rate = Vector::from_counts(gyro) - self.bias.counts();
-        let turned = self.inclination.turned(self.rate);
-        let force = force().vector();
-        self.rest.add_force(force);
-        self.inclination.correct(turned, force);
+        if self.inclination.is_settled() {
+            let turned = self.inclination.turned(self.rate);
+            let force = force().vector();
+            self.rest.add_force(force);
+            self.inclination.correct(turned, force);
+        } else {
+            self.start(force());
+        }
         if let Some(field) = field {
             self.update_heading(field);
         }
@@ -147,17 +148,23 @@ impl<M: Multiply> Fusion<M> {
         match self.step {
             0 => self.look_at_rate(),
             1 => self.look_at_force(),
-            2 if self.is_still() => self.follow_rest(),
+            2 => self.follow_rest(),
             3 => self.follow_tilt(),
             _ => {}
         }
     }
 
-    #[cold]
+    /// A sample of the first second, the rate of which is there already.
     #[inline(never)]
     fn start(&mut self, force: Force) {
-        self.inclination.level(force.vector());
-        self.started = true;
+        let force = force.vector();
+        if !self.started {
+            self.inclination.level(force);
+            self.started = true;
+        }
+        self.rest.add_force(force);
+        let turned = self.inclination.turned(self.rate);
+        self.inclination.correct_at_the_start(turned, force);
     }
 
     /// One field.
@@ -177,7 +184,6 @@ impl<M: Multiply> Fusion<M> {
     /// At the last block: its rate.
     #[inline(never)]
     fn look_at_rate(&mut self) {
-        self.inclination.normalise();
         self.rest.look_at_rate(self.bias.known());
     }
 
@@ -190,15 +196,17 @@ impl<M: Multiply> Fusion<M> {
         }
     }
 
-    /// What a rest means for the bias.
+    /// What a rest means for the bias; and this is when the orientation gets its length.
     #[inline(never)]
     fn follow_rest(&mut self) {
+        self.inclination.normalise();
         match self.motion() {
             Motion::Still { samples } if samples <= DECIMATION => {
                 let (rate, blocks) = self.rest.calm_rate();
                 self.bias.begins_to_rest(rate, blocks);
             }
-            _ => self.bias.rests(self.rest.block_rate()),
+            Motion::Still { .. } => self.bias.rests(self.rest.block_rate()),
+            Motion::Moving { .. } => {}
         }
     }
 

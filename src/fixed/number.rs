@@ -204,12 +204,6 @@ impl<M: Multiply, const BITS: u32> Wide<M, BITS> {
         self.bits as u32
     }
 
-    /// This and one more, as long as it fits.
-    #[inline(always)]
-    pub fn with(self, more: Q<M, BITS>) -> Self {
-        Self::from_bits(self.bits.wrapping_add(i64::from(more.bits)))
-    }
-
     /// This and a b.
     #[inline(always)]
     pub fn plus<const A: u32, const B: u32>(self, a: Q<M, A>, b: Q<M, B>) -> Self {

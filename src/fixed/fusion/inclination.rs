@@ -69,6 +69,9 @@ impl<M: Multiply> Scaled<M> {
 /// such leave a quaternion that its format holds.
 const LARGEST_CORRECTION: f32 = 0.1;
 
+/// Samples of the start whose corrections may be so large that each is followed by a root.
+const LARGE: u32 = 64;
+
 impl<M: Multiply> Coefficients<M> {
     fn new(parameters: &Parameters<f32>, rates: &Rates) -> Self {
         let period = seconds(rates.sample);
@@ -124,16 +127,33 @@ impl<M: Multiply> Inclination<M> {
     ///
     /// 2. a ← q_ω f q_ω⁻¹, and its error e of x and z;
     /// 3. b ← b + k_l(e − b), and of that c = k_c b; in the first second c = e/n instead, and b is 0;
-    /// 4. q ← (1, c/2) q_ω, of unit length.
+    /// 4. q ← (1, c/2) q_ω, which [`Self::normalise`] makes of unit length.
     #[inline(always)]
     pub fn correct(&mut self, q_omega: Quaternion<M>, force: Vector<M, 15>) {
-        let (x, z) = (q_omega.world_x().dot(force), q_omega.world_z().dot(force));
-        if self.is_settled() {
-            let (c_x, c_z) = self.correction(x, z);
-            self.orientation = q_omega.levelled_a_little(c_x, c_z);
-        } else {
-            let (c_x, c_z) = self.correction_of_the_start(x, z);
-            self.orientation = q_omega.levelled_a_little(c_x, c_z);
+        let [x, z] = lean(q_omega, force);
+        let low_pass = self.coefficients.low_pass;
+        let [b_x, b_z] = self.error;
+        let (b_x, b_z) = (b_x.towards(x, low_pass), b_z.towards(z, low_pass));
+        self.error = [b_x, b_z];
+        let correction = self.coefficients.correction;
+        let (c_x, c_z) = (correction.times(b_x.upper()), correction.times(b_z.upper()));
+        self.orientation = q_omega.levelled_a_little(c_x, c_z);
+    }
+
+    /// The same in the first second.
+    #[inline(always)]
+    pub fn correct_at_the_start(&mut self, q_omega: Quaternion<M>, force: Vector<M, 15>) {
+        self.age += 1;
+        let share: Q<M, 31> = per(NonZeroU32::new(self.age).unwrap_or(NonZeroU32::MIN));
+        let bits = self.coefficients.bits_per_g;
+        // A knock in the first samples must not turn the picture over. 1 g itself would be too large by a bit.
+        let one_g = Q::<M, 10>::from_bits((1 << (bits + 10)) - 1);
+        let [c_x, c_z] = lean(q_omega, force).map(|part| {
+            let in_g = Q::<M, 30>::from_bits(part.limited(one_g).bits() << (20 - bits));
+            Q::<M, 29>::product(in_g, share).read_as::<30>().finer()
+        });
+        self.orientation = q_omega.levelled_a_little(c_x, c_z);
+        if self.age < LARGE {
             self.normalise();
         }
     }
@@ -155,32 +175,6 @@ impl<M: Multiply> Inclination<M> {
         if let Some(orientation) = self.orientation.normalised_anywhere() {
             self.orientation = orientation;
         }
-    }
-
-    /// ½ c.
-    #[inline(always)]
-    fn correction(&mut self, x: Q<M, 10>, z: Q<M, 10>) -> (Q<M, 32>, Q<M, 32>) {
-        let low_pass = self.coefficients.low_pass;
-        let [b_x, b_z] = self.error;
-        let (b_x, b_z) = (b_x.towards(x, low_pass), b_z.towards(z, low_pass));
-        self.error = [b_x, b_z];
-        let correction = self.coefficients.correction;
-        (correction.times(b_x.upper()), correction.times(b_z.upper()))
-    }
-
-    /// ½ e/n.
-    #[inline(always)]
-    fn correction_of_the_start(&mut self, x: Q<M, 10>, z: Q<M, 10>) -> (Q<M, 32>, Q<M, 32>) {
-        self.age += 1;
-        let share: Q<M, 31> = per(NonZeroU32::new(self.age).unwrap_or(NonZeroU32::MIN));
-        let bits = self.coefficients.bits_per_g;
-        // A knock in the first samples must not turn the picture over. 1 g itself would be too large by a bit.
-        let one_g = Q::<M, 10>::from_bits((1 << (bits + 10)) - 1);
-        let half = |part: Q<M, 10>| {
-            let in_g = Q::<M, 30>::from_bits(part.limited(one_g).bits() << (20 - bits));
-            Q::<M, 29>::product(in_g, share).read_as::<30>().finer()
-        };
-        (half(x), half(z))
     }
 
     /// Body to world.
@@ -215,4 +209,10 @@ impl<M: Multiply> Inclination<M> {
         self.error = [Wide::from_bits(0); 2];
         self.age = self.coefficients.start;
     }
+}
+
+/// x and z of the force in the world.
+#[inline(always)]
+fn lean<M: Multiply>(q: Quaternion<M>, force: Vector<M, 15>) -> [Q<M, 10>; 2] {
+    [q.world_x().dot(force), q.world_z().dot(force)]
 }

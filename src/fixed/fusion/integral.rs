@@ -39,18 +39,18 @@ struct Coefficients<M> {
     /// That of the start, times samples.
     tilt_start: Quotient,
     /// Samples in a second.
-    tilt_second: u32,
+    tilt_second: NonZeroU32,
     /// Gains in a field, counts of the gyro, as Q28.
     heading: Q<M, 28>,
     /// That of the start, times fields.
     heading_start: Quotient,
     /// Fields in a second; before so many the heading has not settled.
-    field_second: u32,
+    field_second: NonZeroU32,
     /// Gain in a field per sample since the last rest, as Q56.
     heading_per_sample: u32,
 }
 
-/// A number to be divided by a count: `mantissa` 2^`shift`.
+/// A number to be divided by counts: `mantissa` 2^`shift`.
 #[derive(Clone, Copy, Debug)]
 struct Quotient {
     mantissa: u32,
@@ -58,8 +58,10 @@ struct Quotient {
 }
 
 impl Quotient {
-    fn new(value: f32) -> Self {
-        let (mut value, mut shift) = (value, 0);
+    /// `least` is the smallest of the counts, for which the quotient has to fit.
+    fn new(value: f32, least: NonZeroU32) -> Self {
+        let most = i32::MAX as f32 * least.get() as f32;
+        let (mut value, mut shift) = (value.min(most), 0);
         while value >= (1_u64 << 32) as f32 && shift < 31 {
             value *= 0.5;
             shift += 1;
@@ -70,13 +72,9 @@ impl Quotient {
         }
     }
 
-    /// At most what a signed number holds.
     #[inline(always)]
     fn over(self, count: NonZeroU32) -> i32 {
-        let quotient = self.mantissa / count;
-        quotient
-            .min(i32::MAX as u32 >> self.shift)
-            .wrapping_shl(self.shift) as i32
+        ((self.mantissa / count) << self.shift) as i32
     }
 }
 
@@ -90,17 +88,21 @@ impl<M: Multiply> Coefficients<M> {
         let heading =
             |gain: f32| size(gain * seconds(rates.field).0) * rates.counts_per_rad_per_s();
         let rest_worth = samples(parameters.rest_worth, rates.sample);
-        let field_second = samples(second, rates.field);
+        let a_second = |period| NonZeroU32::new(samples(second, period)).unwrap_or(NonZeroU32::MIN);
+        let (tilt_second, field_second) = (a_second(rates.sample), a_second(rates.field));
         let per_sample = heading(parameters.heading_integral) / rest_worth as f32;
         Self {
             low_pass: weight(tilt_low_pass_weight(parameters, seconds(block))),
             largest: Q::nearest(LARGEST_ERROR as f32 * rates.counts_per_g()),
             tilt: Q::nearest(tilt),
-            tilt_start: Quotient::new(tilt * (1_u64 << 34) as f32 * tilt_start as f32),
-            tilt_second: samples(second, rates.sample),
+            tilt_start: Quotient::new(tilt * (1_u64 << 34) as f32 * tilt_start as f32, tilt_second),
+            tilt_second,
             heading: Q::nearest(heading(parameters.heading_integral)),
             heading_start: Quotient::new(
-                heading(parameters.heading_integral_start) * (1 << 28) as f32 * field_second as f32,
+                heading(parameters.heading_integral_start)
+                    * (1 << 28) as f32
+                    * field_second.get() as f32,
+                field_second,
             ),
             field_second,
             // A cast saturates.
@@ -201,8 +203,7 @@ impl<M: Multiply> Integral<M> {
         if source != Source::Unmeasured {
             return tilt;
         }
-        let time = NonZeroU32::new(age.saturating_add(tilt_second));
-        let start = tilt_start.over(time.unwrap_or(NonZeroU32::MIN));
+        let start = tilt_start.over(tilt_second.saturating_add(age));
         Q::from_bits(tilt.bits().max(start))
     }
 
@@ -217,13 +218,12 @@ impl<M: Multiply> Integral<M> {
             ..
         } = self.coefficients;
         self.fields = self.fields.saturating_add(1);
-        if self.fields <= field_second {
+        if self.fields <= field_second.get() {
             return None;
         }
         Some(match source {
             Source::Unmeasured => {
-                let time = NonZeroU32::new(self.fields.saturating_add(field_second));
-                let start = heading_start.over(time.unwrap_or(NonZeroU32::MIN));
+                let start = heading_start.over(field_second.saturating_add(self.fields));
                 Q::from_bits(heading.bits().max(start))
             }
             Source::Rest { samples } => {

@@ -3,7 +3,7 @@
 
 use super::super::division::per;
 use super::super::multiply::Multiply;
-use super::super::number::{Q, Wide};
+use super::super::number::Q;
 use super::super::vector::{Vector, WideVector};
 use super::parameters::{Rates, samples, seconds, squared, weight};
 use crate::fusion::parameters::{DECIMATION, low_pass_weight, size};
@@ -33,10 +33,10 @@ pub struct Rest<M> {
     calm: u32,
     /// The low-passed force when they began.
     anchor: Vector<M, 15>,
-    /// Sum of the rates of those blocks until the rest begins, without the first third, and how many:
+    /// Mean of the rates of those blocks until the rest begins, without the first third, and of how many:
     /// what came before has died away by then.
-    settled: [Wide<M, 15>; 3],
-    settled_count: u32,
+    settled: WideVector<M, 47>,
+    settled_count: NonZeroU32,
     /// Whether the last block belongs to a rest.
     still: bool,
     motion: Motion,
@@ -108,8 +108,8 @@ impl<M: Multiply> Rest<M> {
             enough: u32::MAX,
             calm: 0,
             anchor: Vector::ZERO,
-            settled: [Wide::from_bits(0); 3],
-            settled_count: 0,
+            settled: WideVector::ZERO,
+            settled_count: NonZeroU32::MIN,
             still: false,
             motion: Motion::Moving { samples: 0 },
         }
@@ -190,10 +190,13 @@ impl<M: Multiply> Rest<M> {
 
     #[inline(always)]
     fn settle(&mut self) {
-        let [x, y, z] = self.settled;
-        let rate = self.rate;
-        self.settled = [x.with(rate.x), y.with(rate.y), z.with(rate.z)];
-        self.settled_count = self.settled_count.saturating_add(1);
+        if self.calm.wrapping_sub(1) == self.coefficients.third {
+            self.settled = WideVector::from_upper(self.rate);
+            self.settled_count = NonZeroU32::MIN;
+        } else {
+            self.settled_count = self.settled_count.saturating_add(1);
+            self.settled = self.settled.towards(self.rate, per(self.settled_count));
+        }
     }
 
     /// What to make of it.
@@ -224,9 +227,7 @@ impl<M: Multiply> Rest<M> {
 
     /// Mean rate of the calm that led to a rest, and of how many blocks.
     pub fn calm_rate(&self) -> (Vector<M, 15>, NonZeroU32) {
-        let count = NonZeroU32::new(self.settled_count).unwrap_or(NonZeroU32::MIN);
-        let [x, y, z] = self.settled.map(|sum| mean(sum, count));
-        (Vector::new(x, y, z), count)
+        (self.settled.upper(), self.settled_count)
     }
 
     /// Rate of the last block.
@@ -238,8 +239,6 @@ impl<M: Multiply> Rest<M> {
     #[inline(always)]
     fn forget(&mut self) {
         self.calm = 0;
-        self.settled = [Wide::from_bits(0); 3];
-        self.settled_count = 0;
     }
 
     #[inline(always)]
@@ -256,14 +255,4 @@ impl<M: Multiply> Rest<M> {
         self.still = false;
         self.forget();
     }
-}
-
-/// The sum of so many over their number.
-fn mean<M: Multiply>(sum: Wide<M, 15>, count: NonZeroU32) -> Q<M, 15> {
-    // The sum's first 31 bits are enough.
-    let size = sum.bits().unsigned_abs();
-    let shift = 33_u32.saturating_sub(size.leading_zeros());
-    let first = Q::<M, 15>::from_bits((sum.bits() >> shift) as i32);
-    let share: Q<M, 31> = per(count);
-    Q::from_bits((((first.wide(share) >> 16) << shift) >> 15) as i32)
 }
