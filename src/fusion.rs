@@ -122,8 +122,9 @@ impl<T: RealField + Copy> Fusion<T> {
         match self.step {
             0 => self.rest.look_at_rate(self.bias.at_rest()),
             1 => self.look_at_force(),
-            2 if self.is_still() => self.follow_rest(),
-            3 => self.follow_tilt(),
+            2 => self.rest.settle(),
+            3 if self.is_still() => self.follow_rest(),
+            4 => self.follow_tilt(),
             _ => {}
         }
     }
@@ -150,12 +151,11 @@ impl<T: RealField + Copy> Fusion<T> {
 
     /// What a rest means for the bias.
     fn follow_rest(&mut self) {
-        match self.motion() {
-            Motion::Still { samples } if samples <= DECIMATION => {
-                let (rate, blocks) = self.rest.calm_rate();
-                self.bias.begins_to_rest(rate, blocks);
-            }
-            _ => self.bias.rests(self.rest.block_rate()),
+        if self.rest.begins() {
+            let (rate, blocks) = self.rest.calm_rate();
+            self.bias.begins_to_rest(rate, blocks);
+        } else {
+            self.bias.rests(self.rest.block_rate());
         }
     }
 

@@ -139,7 +139,7 @@ impl<M: Multiply> Fusion<M> {
             self.rest.add_force(force);
             self.inclination.correct(turned, force);
         } else {
-            self.start(force());
+            self.start(force);
         }
         if let Some(field) = field {
             self.update_heading(field);
@@ -148,16 +148,17 @@ impl<M: Multiply> Fusion<M> {
         match self.step {
             0 => self.look_at_rate(),
             1 => self.look_at_force(),
-            2 => self.follow_rest(),
-            3 => self.follow_tilt(),
+            2 => self.settle(),
+            3 if self.is_still() => self.follow_rest(),
+            4 => self.follow_tilt(),
             _ => {}
         }
     }
 
     /// A sample of the first second, the rate of which is there already.
     #[inline(never)]
-    fn start(&mut self, force: Force) {
-        let force = force.vector();
+    fn start(&mut self, force: impl Fn() -> Force) {
+        let force = force().vector();
         if !self.started {
             self.inclination.level(force);
             self.started = true;
@@ -196,17 +197,21 @@ impl<M: Multiply> Fusion<M> {
         }
     }
 
-    /// What a rest means for the bias; and this is when the orientation gets its length.
+    /// What may become a rest is kept; and this is when the orientation gets its length.
+    #[inline(never)]
+    fn settle(&mut self) {
+        self.rest.settle();
+        self.inclination.normalise();
+    }
+
+    /// What a rest means for the bias.
     #[inline(never)]
     fn follow_rest(&mut self) {
-        self.inclination.normalise();
-        match self.motion() {
-            Motion::Still { samples } if samples <= DECIMATION => {
-                let (rate, blocks) = self.rest.calm_rate();
-                self.bias.begins_to_rest(rate, blocks);
-            }
-            Motion::Still { .. } => self.bias.rests(self.rest.block_rate()),
-            Motion::Moving { .. } => {}
+        if self.rest.begins() {
+            let (rate, blocks) = self.rest.calm_rate();
+            self.bias.begins_to_rest(rate, blocks);
+        } else {
+            self.bias.rests(self.rest.block_rate());
         }
     }
 

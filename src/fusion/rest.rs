@@ -155,7 +155,6 @@ impl<T: RealField + Copy> Rest<T> {
         let Coefficients {
             low_pass,
             force: limit,
-            calm,
             ..
         } = self.coefficients;
         let Some((mean_rate, mean)) = self.mean else {
@@ -171,12 +170,8 @@ impl<T: RealField + Copy> Rest<T> {
             && (mean - self.anchor).norm_squared() < convert(WANDER * WANDER);
         if close {
             self.calm = self.calm.saturating_add(1);
-            let ripe = self.calm > calm / 3;
-            if ripe && matches!(self.motion, Motion::Moving { .. }) {
-                self.settled = (self.settled.0 + self.rate, self.settled.1.saturating_add(1));
-            }
         } else {
-            self.forget();
+            self.calm = 0;
         }
         self.still = self.calm >= self.enough;
     }
@@ -201,6 +196,22 @@ impl<T: RealField + Copy> Rest<T> {
         self.motion
     }
 
+    /// Keeps the rate of a block that may be the beginning of a rest.
+    pub fn settle(&mut self) {
+        let third = self.coefficients.calm / 3;
+        match (self.calm.saturating_sub(third), self.motion) {
+            (0, _) => {}
+            (1, _) => self.settled = (self.rate, 1),
+            (_, Motion::Still { samples }) if samples > DECIMATION => {}
+            _ => self.settled = (self.settled.0 + self.rate, self.settled.1.saturating_add(1)),
+        }
+    }
+
+    /// Whether the last block is the first of a rest.
+    pub fn begins(&self) -> bool {
+        matches!(self.motion, Motion::Still { samples } if samples <= DECIMATION)
+    }
+
     /// The low-passed rate, rad/s, body frame; zero before the first sample.
     pub fn mean_rate(&self) -> Vector3<T> {
         self.mean.map_or_else(Vector3::zeros, |(rate, _)| rate)
@@ -217,11 +228,6 @@ impl<T: RealField + Copy> Rest<T> {
         self.rate
     }
 
-    fn forget(&mut self) {
-        self.calm = 0;
-        self.settled = (Vector3::zeros(), 0);
-    }
-
     pub fn motion(&self) -> Motion {
         self.motion
     }
@@ -232,6 +238,6 @@ impl<T: RealField + Copy> Rest<T> {
         self.mean = None;
         self.close = false;
         self.still = false;
-        self.forget();
+        self.calm = 0;
     }
 }

@@ -33,8 +33,10 @@ struct Coefficients<M> {
     low_pass: Q<M, 32>,
     /// ½ k_c per count: half of the share of it that is corrected in a sample.
     correction: Scaled<M>,
-    /// 1 g has as many counts as 2 to this.
-    bits_per_g: u32,
+    /// Just below 1 g: that itself would be too large by a bit for what is made of it in the start.
+    one_g: Q<M, 10>,
+    /// From there to Q30, in g.
+    shift_to_g: u32,
     start: u32,
 }
 
@@ -76,13 +78,16 @@ impl<M: Multiply> Coefficients<M> {
     fn new(parameters: &Parameters<f32>, rates: &Rates) -> Self {
         let period = seconds(rates.sample);
         let per_count = 0.5 * tilt_correction(parameters, period) / rates.counts_per_g();
+        // 2¹¹ to 2¹⁴.
+        let bits_per_g = (rates.counts_per_g() as u32).ilog2();
         // √3 · 2¹⁵ counts.
         let most = LARGEST_CORRECTION / 56_756.0;
         Self {
             half_angle_per_count: half_angle_per_count(rates.ranges.gyro, rates.sample),
             low_pass: weight(tilt_low_pass_weight(parameters, period)),
             correction: Scaled::new(per_count.min(most)),
-            bits_per_g: (rates.counts_per_g() as u32).ilog2(),
+            one_g: Q::from_bits((1 << (bits_per_g + 10)) - 1),
+            shift_to_g: 20 - bits_per_g,
             start: samples(parameters.start_time, rates.sample),
         }
     }
@@ -145,11 +150,10 @@ impl<M: Multiply> Inclination<M> {
     pub fn correct_at_the_start(&mut self, q_omega: Quaternion<M>, force: Vector<M, 15>) {
         self.age += 1;
         let share: Q<M, 31> = per(NonZeroU32::new(self.age).unwrap_or(NonZeroU32::MIN));
-        let bits = self.coefficients.bits_per_g;
-        // A knock in the first samples must not turn the picture over. 1 g itself would be too large by a bit.
-        let one_g = Q::<M, 10>::from_bits((1 << (bits + 10)) - 1);
+        // A knock in the first samples must not turn the picture over.
         let [c_x, c_z] = lean(q_omega, force).map(|part| {
-            let in_g = Q::<M, 30>::from_bits(part.limited(one_g).bits() << (20 - bits));
+            let counts = part.limited(self.coefficients.one_g);
+            let in_g = Q::<M, 30>::from_bits(counts.bits() << self.coefficients.shift_to_g);
             Q::<M, 29>::product(in_g, share).read_as::<30>().finer()
         });
         self.orientation = q_omega.levelled_a_little(c_x, c_z);

@@ -170,26 +170,17 @@ impl<M: Multiply> Integral<M> {
 
     #[inline(always)]
     fn follow(&mut self, inclination: &Inclination<M>) -> [Vector<M, 27>; 2] {
-        if self.fresh {
-            self.begin(inclination);
-        }
         let q = inclination.orientation();
-        let low_pass = self.coefficients.low_pass;
-        let [x, z] = self.axes;
-        self.axes = [
-            x.towards(q.world_x(), low_pass),
-            z.towards(q.world_z(), low_pass),
-        ];
-        self.axes
-    }
-
-    /// The first axes are what the low-pass begins with.
-    #[cold]
-    #[inline(never)]
-    fn begin(&mut self, inclination: &Inclination<M>) {
-        let q = inclination.orientation();
-        self.axes = [q.world_x(), q.world_z()];
+        let now = [q.world_x(), q.world_z()];
+        self.axes = if self.fresh {
+            now
+        } else {
+            let low_pass = self.coefficients.low_pass;
+            let [x, z] = self.axes;
+            [x.towards(now[0], low_pass), z.towards(now[1], low_pass)]
+        };
         self.fresh = false;
+        self.axes
     }
 
     #[inline(always)]

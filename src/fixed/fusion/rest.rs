@@ -139,10 +139,11 @@ impl<M: Multiply> Rest<M> {
         let (rate, force) = (self.block.rate.read_as(), self.block.force.read_as());
         self.block = Block::EMPTY;
         (self.rate, self.force) = (rate, force);
-        if self.fresh {
-            self.begin();
-        }
-        self.mean_rate = self.mean_rate.towards(rate, self.coefficients.low_pass);
+        self.mean_rate = if self.fresh {
+            WideVector::from_upper(rate)
+        } else {
+            self.mean_rate.towards(rate, self.coefficients.low_pass)
+        };
         let mean: Vector<M, 15> = self.mean_rate.upper();
         let is_near =
             |known: Vector<M, 15>| (mean - known).is_within(self.coefficients.largest_change);
@@ -160,7 +161,12 @@ impl<M: Multiply> Rest<M> {
     #[inline(always)]
     pub fn look_at_force(&mut self) {
         let force = self.force;
-        self.mean_force = self.mean_force.towards(force, self.coefficients.low_pass);
+        self.mean_force = if self.fresh {
+            WideVector::from_upper(force)
+        } else {
+            self.mean_force.towards(force, self.coefficients.low_pass)
+        };
+        self.fresh = false;
         let mean: Vector<M, 15> = self.mean_force.upper();
         if self.calm == 0 {
             self.anchor = mean;
@@ -170,33 +176,10 @@ impl<M: Multiply> Rest<M> {
             && (mean - self.anchor).squared() < self.coefficients.wander;
         if close {
             self.calm = self.calm.saturating_add(1);
-            if self.calm > self.coefficients.third && matches!(self.motion, Motion::Moving { .. }) {
-                self.settle();
-            }
         } else {
-            self.forget();
+            self.calm = 0;
         }
         self.still = self.calm >= self.enough;
-    }
-
-    /// The first block is what the low-passes begin with.
-    #[cold]
-    #[inline(never)]
-    fn begin(&mut self) {
-        self.fresh = false;
-        self.mean_rate = WideVector::from_upper(self.rate);
-        self.mean_force = WideVector::from_upper(self.force);
-    }
-
-    #[inline(always)]
-    fn settle(&mut self) {
-        if self.calm.wrapping_sub(1) == self.coefficients.third {
-            self.settled = WideVector::from_upper(self.rate);
-            self.settled_count = NonZeroU32::MIN;
-        } else {
-            self.settled_count = self.settled_count.saturating_add(1);
-            self.settled = self.settled.towards(self.rate, per(self.settled_count));
-        }
     }
 
     /// What to make of it.
@@ -220,6 +203,30 @@ impl<M: Multiply> Rest<M> {
         self.motion
     }
 
+    /// Keeps the rate of a block that may be the beginning of a rest.
+    #[inline(always)]
+    pub fn settle(&mut self) {
+        let third = self.coefficients.third;
+        match (self.calm.saturating_sub(third), self.motion) {
+            (0, _) => {}
+            (1, _) => {
+                self.settled = WideVector::from_upper(self.rate);
+                self.settled_count = NonZeroU32::MIN;
+            }
+            (_, Motion::Still { samples }) if samples > DECIMATION => {}
+            _ => {
+                self.settled_count = self.settled_count.saturating_add(1);
+                self.settled = self.settled.towards(self.rate, per(self.settled_count));
+            }
+        }
+    }
+
+    /// Whether the last block is the first of a rest.
+    #[inline(always)]
+    pub fn begins(&self) -> bool {
+        matches!(self.motion, Motion::Still { samples } if samples <= DECIMATION)
+    }
+
     /// The low-passed rate, body frame; zero before the first sample.
     pub fn mean_rate(&self) -> Vector<M, 15> {
         self.mean_rate.upper()
@@ -237,11 +244,6 @@ impl<M: Multiply> Rest<M> {
     }
 
     #[inline(always)]
-    fn forget(&mut self) {
-        self.calm = 0;
-    }
-
-    #[inline(always)]
     pub fn motion(&self) -> Motion {
         self.motion
     }
@@ -253,6 +255,6 @@ impl<M: Multiply> Rest<M> {
         self.fresh = true;
         self.close = false;
         self.still = false;
-        self.forget();
+        self.calm = 0;
     }
 }
