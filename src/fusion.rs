@@ -124,7 +124,8 @@ impl<T: RealField + Copy> Fusion<T> {
             1 => self.look_at_force(),
             2 => self.rest.settle(),
             3 if self.is_still() => self.follow_rest(),
-            4 => self.follow_tilt(),
+            4 => self.integral.follow(&self.inclination),
+            5 if !self.is_still() => self.follow_tilt(),
             _ => {}
         }
     }
@@ -144,8 +145,10 @@ impl<T: RealField + Copy> Fusion<T> {
             return;
         };
         let source = self.bias.source();
-        if let Some(shift) = self.integral.of_heading(&self.inclination, error, source) {
-            self.shift_bias(shift);
+        if let Some(shift) = self.integral.of_heading(&self.inclination, error, source)
+            && !self.is_still()
+        {
+            self.bias.shift(shift);
         }
     }
 
@@ -163,18 +166,13 @@ impl<T: RealField + Copy> Fusion<T> {
         matches!(self.motion(), Motion::Still { .. })
     }
 
-    /// What the tilt's error means for it.
+    /// What the tilt's error means for it; at rest the mean knows better.
     fn follow_tilt(&mut self) {
-        let source = self.bias.source();
-        if let Some(shift) = self.integral.of_tilt(&self.inclination, source) {
-            self.shift_bias(shift);
-        }
-    }
-
-    /// At rest the mean knows better.
-    fn shift_bias(&mut self, error: Vector3<T>) {
-        if !self.is_still() {
-            self.bias.shift(error);
+        let (error, source) = (self.inclination.error(), self.bias.source());
+        if self.inclination.is_settled()
+            && let Some(shift) = self.integral.of_tilt(error, source)
+        {
+            self.bias.shift(shift);
         }
     }
 

@@ -16,7 +16,7 @@ pub enum Motion {
     Head,
     /// A board that lies still, with noise and a bias.
     Still,
-    /// The first again, with a field in every tenth sample.
+    /// The first again, with a field in every ninth sample: it meets each step of a block.
     HeadWithCompass,
     /// Anything the registers can hold, each end and zero more often than by chance; flips and falls among it.
     Anything,
@@ -84,7 +84,7 @@ impl Motion {
 
     fn field(self, number: u32, random: &mut Random) -> Option<Field> {
         let microtesla = match self {
-            Self::HeadWithCompass if number.is_multiple_of(10) => {
+            Self::HeadWithCompass if number.is_multiple_of(9) => {
                 [0, -40, -20].map(|field| field + i32::from(random.noise(2)))
             }
             Self::AnythingWithCompass => [(); 3].map(|()| i32::from(random.counts())),

@@ -150,7 +150,8 @@ impl<M: Multiply> Fusion<M> {
             1 => self.look_at_force(),
             2 => self.settle(),
             3 if self.is_still() => self.follow_rest(),
-            4 => self.follow_tilt(),
+            4 => self.follow_axes(),
+            5 if !self.is_still() => self.follow_tilt(),
             _ => {}
         }
     }
@@ -177,8 +178,11 @@ impl<M: Multiply> Fusion<M> {
             return;
         };
         let source = self.bias.source();
-        if let Some(errors) = self.integral.of_heading(&self.inclination, error, source) {
-            self.shift_bias(errors);
+        let axis = orientation.world_y();
+        if let Some(error) = self.integral.of_heading(error, source)
+            && !self.is_still()
+        {
+            self.bias.shift([(error, axis)]);
         }
     }
 
@@ -220,20 +224,19 @@ impl<M: Multiply> Fusion<M> {
         matches!(self.motion(), Motion::Still { .. })
     }
 
-    /// What the tilt's error means for it.
+    /// The axes along which an error of tilt is laid to the bias.
     #[inline(never)]
-    fn follow_tilt(&mut self) {
-        let source = self.bias.source();
-        if let Some(errors) = self.integral.of_tilt(&self.inclination, source) {
-            self.shift_bias(errors);
-        }
+    fn follow_axes(&mut self) {
+        self.integral.follow(&self.inclination);
     }
 
-    /// At rest the mean knows better.
-    #[inline(always)]
-    fn shift_bias<const A: usize>(&mut self, errors: [(Q<M, 20>, Vector<M, 27>); A]) {
-        if !self.is_still() {
-            self.bias.shift(errors);
+    /// What the tilt's error means for the bias; at rest the mean knows better.
+    #[inline(never)]
+    fn follow_tilt(&mut self) {
+        if self.inclination.is_settled() {
+            let source = self.bias.source();
+            self.bias
+                .shift(self.integral.of_tilt(self.inclination.error(), source));
         }
     }
 

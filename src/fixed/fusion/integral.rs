@@ -127,64 +127,56 @@ impl<M: Multiply> Integral<M> {
         self.coefficients = Coefficients::new(parameters, rates);
     }
 
-    /// Once in a block, at rest or not: what the error of tilt says of how far the bias is off, times the
-    /// gain, along two axes of the body. None in the first second, in which the tilt is still being found.
+    /// Once in a block, at rest or not.
+    #[inline(always)]
+    pub fn follow(&mut self, inclination: &Inclination<M>) {
+        self.age = self.age.saturating_add(DECIMATION);
+        if !inclination.is_settled() {
+            return;
+        }
+        let q = inclination.orientation();
+        let [now_x, now_z] = [q.world_x(), q.world_z()];
+        self.axes = if self.fresh {
+            [now_x, now_z]
+        } else {
+            let low_pass = self.coefficients.low_pass;
+            let [x, z] = self.axes;
+            [x.towards(now_x, low_pass), z.towards(now_z, low_pass)]
+        };
+        self.fresh = false;
+    }
+
+    /// Then what the error of tilt says of how far the bias is off, times the gain, along two axes of the body.
+    /// Not in the first second, in which the tilt is still being found.
     #[inline(always)]
     pub fn of_tilt(
         &mut self,
-        inclination: &Inclination<M>,
+        error: [Q<M, 10>; 2],
         source: Source,
-    ) -> Option<[(Q<M, 20>, Vector<M, 27>); 2]> {
-        let age = self.age;
-        self.age = age.saturating_add(DECIMATION);
-        if !inclination.is_settled() {
-            return None;
-        }
-        let [axis_x, axis_z] = self.follow(inclination);
-        let gain = self.tilt_gain(source, age);
-        let largest = self.coefficients.largest;
-        let [x, z] = inclination.error().map(|part| part.limited(largest));
+    ) -> [(Q<M, 20>, Vector<M, 27>); 2] {
+        let gain = self.tilt_gain(source);
+        let [x, z] = error.map(|part| part.limited(self.coefficients.largest));
         let [rest_x, rest_z, _] = &mut self.remainders;
         // b = (−z, x).
         let about_x = carried(rest_x, gain, -z.finer::<18>());
         let about_z = carried(rest_z, gain, x.finer::<18>());
-        Some([(about_x, axis_x), (about_z, axis_z)])
+        let [axis_x, axis_z] = self.axes;
+        [(about_x, axis_x), (about_z, axis_z)]
     }
 
-    /// With every field that tells of the heading: what its error, a sine, says of the bias, as above. None
-    /// in the compass's first second.
+    /// With every field that tells of the heading: what its error, a sine, says of the bias, as above, along the
+    /// vertical. None in the compass's first second.
     #[inline(always)]
-    pub fn of_heading(
-        &mut self,
-        inclination: &Inclination<M>,
-        error: Q<M, 30>,
-        source: Source,
-    ) -> Option<[(Q<M, 20>, Vector<M, 27>); 1]> {
+    pub fn of_heading(&mut self, error: Q<M, 30>, source: Source) -> Option<Q<M, 20>> {
         let gain = self.heading_gain(source)?;
         let largest = const { Q::constant(LARGEST_HEADING_ERROR) };
         let error = error.limited(largest).coarser::<24>();
         let [.., rest] = &mut self.remainders;
-        let about_y = carried(rest, gain, error);
-        Some([(about_y, inclination.orientation().world_y())])
+        Some(carried(rest, gain, error))
     }
 
     #[inline(always)]
-    fn follow(&mut self, inclination: &Inclination<M>) -> [Vector<M, 27>; 2] {
-        let q = inclination.orientation();
-        let now = [q.world_x(), q.world_z()];
-        self.axes = if self.fresh {
-            now
-        } else {
-            let low_pass = self.coefficients.low_pass;
-            let [x, z] = self.axes;
-            [x.towards(now[0], low_pass), z.towards(now[1], low_pass)]
-        };
-        self.fresh = false;
-        self.axes
-    }
-
-    #[inline(always)]
-    fn tilt_gain(&self, source: Source, age: u32) -> Q<M, 34> {
+    fn tilt_gain(&self, source: Source) -> Q<M, 34> {
         let Coefficients {
             tilt,
             tilt_start,
@@ -194,7 +186,7 @@ impl<M: Multiply> Integral<M> {
         if source != Source::Unmeasured {
             return tilt;
         }
-        let start = tilt_start.over(tilt_second.saturating_add(age));
+        let start = tilt_start.over(tilt_second.saturating_add(self.age));
         Q::from_bits(tilt.bits().max(start))
     }
 
