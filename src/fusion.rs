@@ -120,10 +120,21 @@ impl<T: RealField + Copy> Fusion<T> {
         }
         self.step = (self.step + 1) % DECIMATION;
         match self.step {
-            0 => self.rest.look(self.bias.at_rest()),
-            1 => self.follow_rest(),
-            7 => self.follow_tilt(),
+            0 => self.rest.look_at_rate(self.bias.at_rest()),
+            1 => self.look_at_force(),
+            2 => self.rest.settle(),
+            3 if self.is_still() => self.follow_rest(),
+            4 => self.integral.follow(&self.inclination),
+            5 if !self.is_still() => self.follow_tilt(),
             _ => {}
+        }
+    }
+
+    /// With the force there is a verdict on the last block.
+    fn look_at_force(&mut self) {
+        self.rest.look_at_force();
+        if let Motion::Moving { .. } = self.rest.judge() {
+            self.bias.moves();
         }
     }
 
@@ -134,35 +145,34 @@ impl<T: RealField + Copy> Fusion<T> {
             return;
         };
         let source = self.bias.source();
-        if let Some(shift) = self.integral.of_heading(&self.inclination, error, source) {
-            self.shift_bias(shift);
+        if let Some(shift) = self.integral.of_heading(&self.inclination, error, source)
+            && !self.is_still()
+        {
+            self.bias.shift(shift);
         }
     }
 
-    /// The verdict on the last block, and what it means for the bias.
+    /// What a rest means for the bias.
     fn follow_rest(&mut self) {
-        match self.rest.judge() {
-            Motion::Still { samples } if samples <= DECIMATION => {
-                let (rate, blocks) = self.rest.calm_rate();
-                self.bias.begins_to_rest(rate, blocks);
-            }
-            Motion::Still { .. } => self.bias.rests(self.rest.block_rate()),
-            Motion::Moving { .. } => self.bias.moves(),
+        if self.rest.begins() {
+            let (rate, blocks) = self.rest.calm_rate();
+            self.bias.begins_to_rest(rate, blocks);
+        } else {
+            self.bias.rests(self.rest.block_rate());
         }
     }
 
-    /// What the tilt's error means for it.
+    fn is_still(&self) -> bool {
+        matches!(self.motion(), Motion::Still { .. })
+    }
+
+    /// What the tilt's error means for it; at rest the mean knows better.
     fn follow_tilt(&mut self) {
-        let source = self.bias.source();
-        if let Some(shift) = self.integral.of_tilt(&self.inclination, source) {
-            self.shift_bias(shift);
-        }
-    }
-
-    /// At rest the mean knows better.
-    fn shift_bias(&mut self, error: Vector3<T>) {
-        if matches!(self.motion(), Motion::Moving { .. }) {
-            self.bias.shift(error);
+        let (error, source) = (self.inclination.error(), self.bias.source());
+        if self.inclination.is_settled()
+            && let Some(shift) = self.integral.of_tilt(error, source)
+        {
+            self.bias.shift(shift);
         }
     }
 
@@ -227,7 +237,7 @@ impl<T: RealField + Copy> Fusion<T> {
     /// At rest: how fast the orientation still turns, that is the heading's drift, in the body's axes.
     /// None on the move, when nobody can tell.
     pub fn residual(&self) -> Option<AngularRate<T>> {
-        matches!(self.motion(), Motion::Still { .. })
+        self.is_still()
             .then(|| AngularRate::from_rad_per_s(self.rest.mean_rate() - self.bias.rad_per_s()))
     }
 

@@ -118,36 +118,55 @@ impl<M: Multiply> Fusion<M> {
     /// One sample with the gyro's bias still in it, body frame; every so often with a field.
     #[inline(always)]
     pub fn update(&mut self, sample: &RawSample, field: Option<Field>) {
-        self.update_corrected(sample.gyro, Force::from_counts(sample.accel), field);
+        let force = || Force::from_counts(sample.accel);
+        self.update_with(sample.gyro, force, field);
     }
 
     /// The same with the accelerometer corrected.
     #[inline(always)]
-    pub fn update_corrected(&mut self, gyro: [i16; 3], force: Force, field: Option<Field>) {
-        let force = force.vector();
-        if !self.started {
+    pub fn update_corrected(&mut self, gyro: [i16; 3], force: &Force, field: Option<Field>) {
+        self.update_with(gyro, || *force, field);
+    }
+
+    /// The force is asked for when it is needed: there are not registers enough to keep it.
+    #[inline(always)]
+    fn update_with(&mut self, gyro: [i16; 3], force: impl Fn() -> Force, field: Option<Field>) {
+        self.rest.add_rate(gyro);
+        self.rate = Vector::from_counts(gyro) - self.bias.counts();
+        if self.inclination.is_settled() {
+            let turned = self.inclination.turned(self.rate);
+            let force = force().vector();
+            self.rest.add_force(force);
+            self.inclination.correct(turned, force);
+        } else {
             self.start(force);
         }
-        self.rate = Vector::from_counts(gyro) - self.bias.counts();
-        self.inclination.update(self.rate, force);
-        self.rest.add(gyro, force);
         if let Some(field) = field {
             self.update_heading(field);
         }
         self.step = (self.step + 1) % DECIMATION;
         match self.step {
-            0 => self.look(),
-            1 => self.follow_rest(),
-            7 => self.follow_tilt(),
+            0 => self.look_at_rate(),
+            1 => self.look_at_force(),
+            2 => self.settle(),
+            3 if self.is_still() => self.follow_rest(),
+            4 => self.follow_axes(),
+            5 if !self.is_still() => self.follow_tilt(),
             _ => {}
         }
     }
 
-    #[cold]
+    /// A sample of the first second, the rate of which is there already.
     #[inline(never)]
-    fn start(&mut self, force: Vector<M, 15>) {
-        self.inclination.level(force);
-        self.started = true;
+    fn start(&mut self, force: impl Fn() -> Force) {
+        let force = force().vector();
+        if !self.started {
+            self.inclination.level(force);
+            self.started = true;
+        }
+        self.rest.add_force(force);
+        let turned = self.inclination.turned(self.rate);
+        self.inclination.correct_at_the_start(turned, force);
     }
 
     /// One field.
@@ -159,44 +178,65 @@ impl<M: Multiply> Fusion<M> {
             return;
         };
         let source = self.bias.source();
-        if let Some(errors) = self.integral.of_heading(&self.inclination, error, source) {
-            self.shift_bias(errors);
+        let axis = orientation.world_y();
+        if let Some(error) = self.integral.of_heading(error, source)
+            && !self.is_still()
+        {
+            self.bias.shift([(error, axis)]);
         }
     }
 
-    /// At the last block.
+    /// At the last block: its rate.
     #[inline(never)]
-    fn look(&mut self) {
-        self.rest.look(self.bias.known());
+    fn look_at_rate(&mut self) {
+        self.rest.look_at_rate(self.bias.known());
     }
 
-    /// The verdict on it, and what that means for the bias.
+    /// And its force, with which there is a verdict.
+    #[inline(never)]
+    fn look_at_force(&mut self) {
+        self.rest.look_at_force();
+        if let Motion::Moving { .. } = self.rest.judge() {
+            self.bias.moves();
+        }
+    }
+
+    /// What may become a rest is kept; and this is when the orientation gets its length.
+    #[inline(never)]
+    fn settle(&mut self) {
+        self.rest.settle();
+        self.inclination.normalise();
+    }
+
+    /// What a rest means for the bias.
     #[inline(never)]
     fn follow_rest(&mut self) {
-        match self.rest.judge() {
-            Motion::Still { samples } if samples <= DECIMATION => {
-                let (rate, blocks) = self.rest.calm_rate();
-                self.bias.begins_to_rest(rate, blocks);
-            }
-            Motion::Still { .. } => self.bias.rests(self.rest.block_rate()),
-            Motion::Moving { .. } => self.bias.moves(),
+        if self.rest.begins() {
+            let (rate, blocks) = self.rest.calm_rate();
+            self.bias.begins_to_rest(rate, blocks);
+        } else {
+            self.bias.rests(self.rest.block_rate());
         }
     }
 
-    /// What the tilt's error means for it.
+    #[inline(always)]
+    fn is_still(&self) -> bool {
+        matches!(self.motion(), Motion::Still { .. })
+    }
+
+    /// The axes along which an error of tilt is laid to the bias.
+    #[inline(never)]
+    fn follow_axes(&mut self) {
+        self.integral.follow(&self.inclination);
+    }
+
+    /// What the tilt's error means for the bias; at rest the mean knows better.
     #[inline(never)]
     fn follow_tilt(&mut self) {
-        let source = self.bias.source();
-        if let Some(errors) = self.integral.of_tilt(&self.inclination, source) {
-            self.shift_bias(errors);
-        }
-    }
-
-    /// At rest the mean knows better.
-    #[inline(always)]
-    fn shift_bias<const A: usize>(&mut self, errors: [(Q<M, 20>, Vector<M, 27>); A]) {
-        if matches!(self.motion(), Motion::Moving { .. }) {
-            self.bias.shift(errors);
+        if self.inclination.is_settled() {
+            let source = self.bias.source();
+            self.bias
+                .shift(self.integral.of_tilt(self.inclination.error(), source));
         }
     }
 
@@ -283,7 +323,7 @@ impl<M: Multiply> Fusion<M> {
     /// None on the move, when nobody can tell.
     pub fn residual(&self) -> Option<AngularRate<f32>> {
         let residual = self.rest.mean_rate() - self.bias.counts();
-        matches!(self.motion(), Motion::Still { .. }).then(|| self.bias.physical(residual))
+        self.is_still().then(|| self.bias.physical(residual))
     }
 
     /// What the compass is worth at the moment.

@@ -180,7 +180,7 @@ pub fn levelled<M: Multiply, const BITS: u32>(
 }
 
 /// (x, z) / √(x² + z²), and the root, for x and z up to ½; none if both are zero.
-#[inline]
+#[inline(always)]
 pub fn horizontal<M: Multiply>(x: Q<M, 30>, z: Q<M, 30>) -> Option<(Q<M, 30>, Q<M, 30>, Q<M, 30>)> {
     let largest = x.bits().unsigned_abs() | z.bits().unsigned_abs();
     if largest == 0 {

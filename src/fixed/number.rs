@@ -183,18 +183,12 @@ impl<M: Multiply, const BITS: u32> Wide<M, BITS> {
         self.bits
     }
 
-    /// From the upper half, the lower being zero.
+    /// From the upper half, and half of its last bit: what is added from then on is rounded to nearest by
+    /// rounding down.
     #[inline(always)]
     pub fn from_upper<const UPPER: u32>(upper: Q<M, UPPER>) -> Self {
         const { assert!(UPPER + 32 == BITS, "the upper half has 32 bits less") }
-        Self::from_bits(i64::from(upper.bits) << 32)
-    }
-
-    /// The upper half, rounded to nearest.
-    #[inline(always)]
-    pub fn nearest<const UPPER: u32>(self) -> Q<M, UPPER> {
-        const { assert!(UPPER + 32 == BITS, "the upper half has 32 bits less") }
-        Q::from_bits((self.bits.wrapping_add(1 << 31) >> 32) as i32)
+        Self::from_bits(i64::from(upper.bits) << 32 | 1 << 31)
     }
 
     /// By this share of the way to `target`: one step of a low-pass of first order, that nothing is rounded
@@ -215,12 +209,6 @@ impl<M: Multiply, const BITS: u32> Wide<M, BITS> {
     #[inline(always)]
     pub fn lower(self) -> u32 {
         self.bits as u32
-    }
-
-    /// This and one more.
-    #[inline(always)]
-    pub fn with(self, more: Q<M, BITS>) -> Self {
-        Self::from_bits(self.bits.saturating_add(i64::from(more.bits)))
     }
 
     /// This and a b.

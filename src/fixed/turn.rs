@@ -1,6 +1,6 @@
 //! Turns about the vertical.
 
-use super::division::{reciprocal_length, shortening};
+use super::division::reciprocal_length;
 use super::multiply::Multiply;
 use super::number::{Q, Wide};
 
@@ -50,9 +50,10 @@ impl<M: Multiply> Turn<M> {
             s: self.s.plus(c, t),
         };
         let excess = turned.excess();
-        let small = const { Q::<M, 28>::constant(1.0 / 128.0).bits() };
+        let small = const { Q::<M, 28>::constant(1.0 / 16384.0).bits() };
         if (-small..small).contains(&excess.bits()) {
-            return turned.shortened(shortening(excess.finer()));
+            // (1 + e)^−½ = 1 − e/2 + 3e²/8 − …, of which the last is below 2e-9.
+            return turned.grown(-excess.read_as::<29>().finer());
         }
         turned.normalised_anywhere(excess)
     }
@@ -66,7 +67,7 @@ impl<M: Multiply> Turn<M> {
     }
 
     #[inline(always)]
-    fn shortened(self, share: Q<M, 32>) -> Self {
+    fn grown(self, share: Q<M, 32>) -> Self {
         let [c, s] = self.halves();
         Self {
             c: self.c.plus(c, share),

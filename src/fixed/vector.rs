@@ -60,10 +60,14 @@ impl<M: Multiply, const BITS: u32> Vector<M, BITS> {
         M::add_wide(sum, self.z.bits(), self.z.bits()) as u64
     }
 
-    /// Whether no part is beyond −`limit` and `limit`.
+    /// Whether no part is beyond −`limit` and `limit`, which is not negative.
     #[inline(always)]
     pub fn is_within(self, limit: Q<M, BITS>) -> bool {
-        let within = |part: Q<M, BITS>| part.bits().unsigned_abs() <= limit.bits().unsigned_abs();
+        let limit = limit.bits();
+        // Moved up by the limit, what is within is no larger than twice that, and what is not wraps around.
+        let within = |part: Q<M, BITS>| {
+            part.bits().wrapping_add(limit) as u32 <= (limit as u32).wrapping_mul(2)
+        };
         within(self.x) && within(self.y) && within(self.z)
     }
 
@@ -73,6 +77,25 @@ impl<M: Multiply, const BITS: u32> Vector<M, BITS> {
         Q::product(self.x, self.x)
             .plus(self.y, self.y)
             .plus(self.z, self.z)
+    }
+
+    /// The scalar product.
+    #[inline(always)]
+    pub fn dot<const B: u32, const OUT: u32>(self, other: Vector<M, B>) -> Q<M, OUT> {
+        Q::product(self.x, other.x)
+            .plus(self.y, other.y)
+            .plus(self.z, other.z)
+    }
+
+    /// By this share of the way to `target`: one step of a low-pass of first order, rounded.
+    #[inline(always)]
+    pub fn towards(self, target: Self, share: Q<M, 32>) -> Self {
+        let way = target - self;
+        Self {
+            x: self.x.plus(way.x, share),
+            y: self.y.plus(way.y, share),
+            z: self.z.plus(way.z, share),
+        }
     }
 
     /// This and as much more of itself as `share` says.
@@ -166,7 +189,7 @@ impl<M: Multiply, const BITS: u32> WideVector<M, BITS> {
         z: Wide::from_bits(0),
     };
 
-    /// From the upper halves, the lower being zero.
+    /// From the upper halves, each with half of its last bit.
     #[inline(always)]
     pub fn from_upper<const UPPER: u32>(upper: Vector<M, UPPER>) -> Self {
         Self {
@@ -180,12 +203,6 @@ impl<M: Multiply, const BITS: u32> WideVector<M, BITS> {
     #[inline(always)]
     pub fn upper<const UPPER: u32>(self) -> Vector<M, UPPER> {
         Vector::new(self.x.upper(), self.y.upper(), self.z.upper())
-    }
-
-    /// The upper halves, rounded to nearest.
-    #[inline(always)]
-    pub fn nearest<const UPPER: u32>(self) -> Vector<M, UPPER> {
-        Vector::new(self.x.nearest(), self.y.nearest(), self.z.nearest())
     }
 
     /// By this share of the way to `target`.

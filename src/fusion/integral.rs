@@ -82,22 +82,28 @@ impl<T: RealField + Copy> Integral<T> {
         self.coefficients = Coefficients::new(parameters, rates);
     }
 
-    /// Once in a block, at rest or not: what the error of tilt says of how far the bias is off, rad/s in
-    /// the body's axes, times the gain. None in the first second, in which the tilt is still being found.
+    /// Once in a block, at rest or not, but not in the first second, in which the tilt is still being found.
+    pub fn follow(&mut self, inclination: &Inclination<T>) {
+        self.age = self.age.saturating_add(DECIMATION);
+        if !inclination.is_settled() {
+            return;
+        }
+        let now = [Vector3::x(), Vector3::z()].map(|axis| inclination.in_body(axis));
+        let before = self.axes.unwrap_or(now);
+        let low_pass = self.coefficients.low_pass;
+        self.axes = Some([0, 1].map(|i| before[i] + (now[i] - before[i]) * low_pass));
+    }
+
+    /// Then what the error of tilt says of how far the bias is off, rad/s in the body's axes, times the gain.
+    /// None in the first second.
     ///
     /// Until the first rest nothing is known, so the gain begins high and falls as 1/(1 s + t):
     /// k_i max(1, t₀/(1 s + t)). A rest tells more of the bias than any motion: after one it is k_i.
-    pub fn of_tilt(&mut self, inclination: &Inclination<T>, source: Source) -> Option<Vector3<T>> {
-        self.age = self.age.saturating_add(DECIMATION);
-        if !inclination.is_settled() {
-            return None;
-        }
-        let [x, z] = self.follow(inclination);
+    pub fn of_tilt(&self, error: [T; 2], source: Source) -> Option<Vector3<T>> {
+        let [x, z] = self.axes?;
         let gain = self.tilt_gain(source);
         let largest: T = convert(LARGEST_ERROR);
-        let error = inclination
-            .error()
-            .map(|e| e.clamp(-largest, largest) * gain);
+        let error = error.map(|e| e.clamp(-largest, largest) * gain);
         Some(x * error[0] + z * error[1])
     }
 
@@ -116,15 +122,6 @@ impl<T: RealField + Copy> Integral<T> {
         let largest: T = convert(LARGEST_HEADING_ERROR);
         let error = error.clamp(-largest, largest);
         Some(inclination.in_body(Vector3::y() * (error * gain)))
-    }
-
-    fn follow(&mut self, inclination: &Inclination<T>) -> [Vector3<T>; 2] {
-        let now = [Vector3::x(), Vector3::z()].map(|axis| inclination.in_body(axis));
-        let before = self.axes.unwrap_or(now);
-        let low_pass = self.coefficients.low_pass;
-        let axes = [0, 1].map(|i| before[i] + (now[i] - before[i]) * low_pass);
-        self.axes = Some(axes);
-        axes
     }
 
     fn tilt_gain(&self, source: Source) -> T {

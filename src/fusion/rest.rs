@@ -35,9 +35,14 @@ pub struct Rest<T: RealField> {
     /// Sum of the rates of those blocks until the rest begins, without the first third, and how many:
     /// what came before has died away by then.
     settled: (Vector3<T>, u32),
-    /// Rate of the last block, rad/s.
+    /// Rate and force of the last block, rad/s and m/s².
     rate: Vector3<T>,
-    /// Whether it belongs to a rest.
+    force: Vector3<T>,
+    /// Whether its rate is close to the mean, and that is one of a rest.
+    close: bool,
+    /// Blocks of calm that make a rest.
+    enough: u32,
+    /// Whether the last block belongs to a rest.
     still: bool,
     motion: Motion,
 }
@@ -93,6 +98,9 @@ impl<T: RealField + Copy> Rest<T> {
             anchor: Vector3::zeros(),
             settled: (Vector3::zeros(), 0),
             rate: Vector3::zeros(),
+            force: Vector3::zeros(),
+            close: false,
+            enough: u32::MAX,
             still: false,
             motion: Motion::Moving { samples: 0 },
         }
@@ -107,12 +115,65 @@ impl<T: RealField + Copy> Rest<T> {
         self.block = (self.block.0 + rate, self.block.1 + force);
     }
 
-    /// A block of [`DECIMATION`] samples has ended. `known` is the bias as measured in the last rest.
-    pub fn look(&mut self, known: Option<AngularRate<T>>) {
+    /// A block of [`DECIMATION`] samples has ended: its rate. `known` is the bias as measured in the last
+    /// rest.
+    ///
+    /// A steady slow turn about the vertical looks like a bias to a gyro and an accelerometer; about
+    /// any other axis the force turns with it. What bounds it is how large a bias usually is, and, once
+    /// one was measured at rest, how far it can have drifted since. A rate that is plausible
+    /// but far from the known bias must stay for a few seconds.
+    pub fn look_at_rate(&mut self, known: Option<AngularRate<T>>) {
+        let Coefficients {
+            low_pass,
+            rate: limit,
+            plausible_bias,
+            largest_change,
+            calm,
+            long,
+            ..
+        } = self.coefficients;
         let share = share::<T>(DECIMATION);
         let (rate, force) = (self.block.0 * share, self.block.1 * share);
         self.block = (Vector3::zeros(), Vector3::zeros());
-        self.still = self.is_still(rate, force, known);
+        (self.rate, self.force) = (rate, force);
+        let (mean, mean_force) = self.mean.unwrap_or((rate, force));
+        let mean = mean + (rate - mean) * low_pass;
+        self.mean = Some((mean, mean_force));
+        let near = |known: AngularRate<T>| (mean - known.rad_per_s()).amax() <= largest_change;
+        let is_known = known.is_some_and(near);
+        self.enough = if known.is_none() || is_known {
+            calm
+        } else {
+            long
+        };
+        self.close =
+            (rate - mean).norm_squared() < limit && (is_known || mean.amax() <= plausible_bias);
+    }
+
+    /// Its force, with which it is known whether the block was still.
+    pub fn look_at_force(&mut self) {
+        let Coefficients {
+            low_pass,
+            force: limit,
+            ..
+        } = self.coefficients;
+        let Some((mean_rate, mean)) = self.mean else {
+            return;
+        };
+        let mean = mean + (self.force - mean) * low_pass;
+        self.mean = Some((mean_rate, mean));
+        if self.calm == 0 {
+            self.anchor = mean;
+        }
+        let close = self.close
+            && (self.force - mean).norm_squared() < limit
+            && (mean - self.anchor).norm_squared() < convert(WANDER * WANDER);
+        if close {
+            self.calm = self.calm.saturating_add(1);
+        } else {
+            self.calm = 0;
+        }
+        self.still = self.calm >= self.enough;
     }
 
     /// What to make of it.
@@ -135,55 +196,20 @@ impl<T: RealField + Copy> Rest<T> {
         self.motion
     }
 
-    /// A steady slow turn about the vertical looks like a bias to a gyro and an accelerometer; about
-    /// any other axis the force turns with it. What bounds it is how large a bias usually is, and, once
-    /// one was measured at rest (`known`), how far it can have drifted since. A rate that is plausible
-    /// but far from the known bias must stay for a few seconds.
-    fn is_still(
-        &mut self,
-        rate: Vector3<T>,
-        force: Vector3<T>,
-        known: Option<AngularRate<T>>,
-    ) -> bool {
-        let Coefficients {
-            low_pass,
-            rate: rate_limit,
-            force: force_limit,
-            plausible_bias,
-            largest_change,
-            calm,
-            long,
-        } = self.coefficients;
-        let (mean_rate, mean_force) = self.mean.unwrap_or((rate, force));
-        let mean_rate = mean_rate + (rate - mean_rate) * low_pass;
-        let mean_force = mean_force + (force - mean_force) * low_pass;
-        self.mean = Some((mean_rate, mean_force));
-        let near = |known: AngularRate<T>| (mean_rate - known.rad_per_s()).amax() <= largest_change;
-        let is_known = known.is_some_and(near);
-        let plausible = mean_rate.amax() <= plausible_bias;
-        if self.calm == 0 {
-            self.anchor = mean_force;
+    /// Keeps the rate of a block that may be the beginning of a rest.
+    pub fn settle(&mut self) {
+        let third = self.coefficients.calm / 3;
+        match (self.calm.saturating_sub(third), self.motion) {
+            (0, _) => {}
+            (1, _) => self.settled = (self.rate, 1),
+            (_, Motion::Still { samples }) if samples > DECIMATION => {}
+            _ => self.settled = (self.settled.0 + self.rate, self.settled.1.saturating_add(1)),
         }
-        let close = (rate - mean_rate).norm_squared() < rate_limit
-            && (force - mean_force).norm_squared() < force_limit
-            && (mean_force - self.anchor).norm_squared() < convert(WANDER * WANDER)
-            && (is_known || plausible);
-        self.rate = rate;
-        if close {
-            self.calm = self.calm.saturating_add(1);
-            let ripe = self.calm > calm / 3;
-            if ripe && matches!(self.motion, Motion::Moving { .. }) {
-                self.settled = (self.settled.0 + rate, self.settled.1.saturating_add(1));
-            }
-        } else {
-            self.forget();
-        }
-        let enough = if known.is_none() || is_known {
-            calm
-        } else {
-            long
-        };
-        self.calm >= enough
+    }
+
+    /// Whether the last block is the first of a rest.
+    pub fn begins(&self) -> bool {
+        matches!(self.motion, Motion::Still { samples } if samples <= DECIMATION)
     }
 
     /// The low-passed rate, rad/s, body frame; zero before the first sample.
@@ -202,11 +228,6 @@ impl<T: RealField + Copy> Rest<T> {
         self.rate
     }
 
-    fn forget(&mut self) {
-        self.calm = 0;
-        self.settled = (Vector3::zeros(), 0);
-    }
-
     pub fn motion(&self) -> Motion {
         self.motion
     }
@@ -215,7 +236,8 @@ impl<T: RealField + Copy> Rest<T> {
     pub fn restart(&mut self) {
         self.block = (Vector3::zeros(), Vector3::zeros());
         self.mean = None;
+        self.close = false;
         self.still = false;
-        self.forget();
+        self.calm = 0;
     }
 }

@@ -57,7 +57,7 @@ impl<M: Multiply> Estimators<M> {
     #[inline(always)]
     pub fn update(&mut self, gyro: [i16; 3], force: Force, field: Option<Field>) {
         match self.choice {
-            Choice::Default => self.fusion.update_corrected(gyro, force, field),
+            Choice::Default => self.fusion.update_corrected(gyro, &force, field),
             Choice::Notes => self.notes.update_corrected(gyro, force),
         }
     }

@@ -3,7 +3,7 @@
 
 use super::super::division::per;
 use super::super::multiply::Multiply;
-use super::super::number::{Q, Wide};
+use super::super::number::Q;
 use super::super::vector::{Vector, WideVector};
 use super::parameters::{Rates, samples};
 use crate::fusion::bias::{MARK, MEMORY, WEIGHT};
@@ -17,8 +17,6 @@ use core::num::NonZeroU32;
 pub struct Bias<M> {
     coefficients: Coefficients<M>,
     exact: WideVector<M, 47>,
-    /// The same, rounded.
-    rounded: Vector<M, 15>,
     at_rest: Option<WideVector<M, 47>>,
     /// As it was at the last two marks of a rest: its end is the beginning of a motion.
     marks: [WideVector<M, 47>; 2],
@@ -63,8 +61,7 @@ impl<M: Multiply> Bias<M> {
     pub(super) fn new(parameters: &Parameters<f32>, rates: &Rates) -> Self {
         Self {
             coefficients: Coefficients::new(parameters, rates),
-            exact: WideVector::ZERO,
-            rounded: Vector::ZERO,
+            exact: WideVector::from_upper(Vector::<M, 15>::ZERO),
             at_rest: None,
             marks: [WideVector::ZERO; 2],
             count: 0,
@@ -78,7 +75,7 @@ impl<M: Multiply> Bias<M> {
 
     /// As it is subtracted.
     pub fn rate(&self) -> AngularRate<f32> {
-        self.physical(self.rounded)
+        self.physical(self.counts())
     }
 
     /// How it is known.
@@ -102,13 +99,13 @@ impl<M: Multiply> Bias<M> {
     /// Counts, as they are subtracted.
     #[inline(always)]
     pub(super) fn counts(&self) -> Vector<M, 15> {
-        self.rounded
+        self.exact.upper()
     }
 
     /// Counts, as measured in the last rest.
     #[inline(always)]
     pub(super) fn known(&self) -> Option<Vector<M, 15>> {
-        self.at_rest.map(WideVector::nearest)
+        self.at_rest.map(WideVector::upper)
     }
 
     /// False if it is none that can be believed; then nothing changes.
@@ -215,20 +212,19 @@ impl<M: Multiply> Bias<M> {
 
     #[inline(always)]
     fn take(&mut self, rate: WideVector<M, 47>) {
+        self.exact = rate;
+        if !self.counts().is_within(self.coefficients.largest) {
+            self.limit();
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn limit(&mut self) {
         let largest = self.coefficients.largest;
-        let bounded = |part: Wide<M, 47>| {
-            let counts: Q<M, 15> = part.upper();
-            if counts.bits().unsigned_abs() < largest.bits().unsigned_abs() {
-                part
-            } else {
-                Wide::from_upper(counts.limited(largest))
-            }
-        };
-        self.exact = WideVector {
-            x: bounded(rate.x),
-            y: bounded(rate.y),
-            z: bounded(rate.z),
-        };
-        self.rounded = self.exact.nearest();
+        let Vector { x, y, z } = self.counts();
+        let limited = [x, y, z].map(|part| part.limited(largest));
+        let [x, y, z] = limited;
+        self.exact = WideVector::from_upper(Vector::new(x, y, z));
     }
 }

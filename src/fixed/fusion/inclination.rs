@@ -20,7 +20,7 @@ pub struct Inclination<M> {
     remainders: Remainders,
     orientation: Quaternion<M>,
     /// b, in counts of the accelerometer, as x and z of the force in the world: b = (−z, x).
-    error: [Wide<M, 44>; 2],
+    error: [Wide<M, 42>; 2],
     /// Samples since the start.
     age: u32,
 }
@@ -33,22 +33,24 @@ struct Coefficients<M> {
     low_pass: Q<M, 32>,
     /// ½ k_c per count: half of the share of it that is corrected in a sample.
     correction: Scaled<M>,
-    /// 1 g has as many counts as 2 to this.
-    bits_per_g: u32,
+    /// Just below 1 g: that itself would be too large by a bit for what is made of it in the start.
+    one_g: Q<M, 10>,
+    /// From there to Q30, in g.
+    shift_to_g: u32,
     start: u32,
 }
 
-/// A number as Q52 after a shift to the left.
+/// A number as Q54 after a shift to the left.
 #[derive(Clone, Copy, Debug)]
 struct Scaled<M> {
-    bits: Q<M, 52>,
+    bits: Q<M, 54>,
     shift: u32,
 }
 
 impl<M: Multiply> Scaled<M> {
     fn new(value: f32) -> Self {
         let (mut value, mut shift) = (value, 0);
-        while value >= (1.0 / (1 << 21) as f32) && shift < 12 {
+        while value >= (1.0 / (1 << 23) as f32) && shift < 16 {
             value *= 0.5;
             shift += 1;
         }
@@ -59,26 +61,33 @@ impl<M: Multiply> Scaled<M> {
     }
 
     #[inline(always)]
-    fn times(self, counts: Q<M, 12>) -> Q<M, 32> {
+    fn times(self, counts: Q<M, 10>) -> Q<M, 32> {
         let product: Q<M, 32> = Q::product(counts, self.bits);
         Q::from_bits(product.bits() << self.shift)
     }
 }
 
-/// Most that is corrected in a sample of a force of 16 g on each axis, as a half angle, rad.
-const LARGEST_CORRECTION: f32 = 0.49;
+/// Most that is corrected in a sample of a force at the end of its range on each axis, as a half angle, rad: eight
+/// such leave a quaternion that its format holds.
+const LARGEST_CORRECTION: f32 = 0.1;
+
+/// Samples of the start whose corrections may be so large that each is followed by a root.
+const LARGE: u32 = 64;
 
 impl<M: Multiply> Coefficients<M> {
     fn new(parameters: &Parameters<f32>, rates: &Rates) -> Self {
         let period = seconds(rates.sample);
         let per_count = 0.5 * tilt_correction(parameters, period) / rates.counts_per_g();
+        // 2¹¹ to 2¹⁴.
+        let bits_per_g = (rates.counts_per_g() as u32).ilog2();
         // √3 · 2¹⁵ counts.
         let most = LARGEST_CORRECTION / 56_756.0;
         Self {
             half_angle_per_count: half_angle_per_count(rates.ranges.gyro, rates.sample),
             low_pass: weight(tilt_low_pass_weight(parameters, period)),
             correction: Scaled::new(per_count.min(most)),
-            bits_per_g: (rates.counts_per_g() as u32).ilog2(),
+            one_g: Q::from_bits((1 << (bits_per_g + 10)) - 1),
+            shift_to_g: 20 - bits_per_g,
             start: samples(parameters.start_time, rates.sample),
         }
     }
@@ -105,56 +114,71 @@ impl<M: Multiply> Inclination<M> {
             half_angle_per_count(rates.ranges.gyro, rates.sample);
     }
 
-    /// One sample, body frame, counts, bias removed.
+    /// The first half of a sample, with the rate (counts, body frame, bias removed):
     ///
-    /// 1. q ← q exp(ωΔt/2);
-    /// 2. a ← q f q⁻¹, and its error e of x and z;
-    /// 3. b ← b + k_l(e − b), and of that c = k_c b; in the first second c = e/n instead, and b is 0;
-    /// 4. q ← (1, c/2) q, of unit length.
+    /// 1. q_ω = q exp(ωΔt/2).
     #[inline(always)]
-    pub fn update(&mut self, rate: Vector<M, 15>, force: Vector<M, 15>) {
-        let Coefficients {
-            half_angle_per_count,
-            low_pass,
-            correction,
-            start,
-            ..
-        } = self.coefficients;
-        let h: Vector<M, 32> = self.remainders.half_angle(rate, half_angle_per_count);
+    pub fn turned(&mut self, rate: Vector<M, 15>) -> Quaternion<M> {
+        let h: Vector<M, 32> = self
+            .remainders
+            .half_angle(rate, self.coefficients.half_angle_per_count);
         let h_squared = h.norm_squared();
         let sine = h.grown(sine_excess(h_squared));
-        let q_omega = self
-            .orientation
-            .rotated_in_body(cosine_excess(h_squared), sine);
-        let Vector { x, z, .. } = q_omega.in_world(force);
-        let (c_x, c_z) = if self.age < start {
-            self.starting(x, z)
-        } else {
-            let [b_x, b_z] = self.error;
-            let (b_x, b_z) = (b_x.towards(x, low_pass), b_z.towards(z, low_pass));
-            self.error = [b_x, b_z];
-            (correction.times(b_x.upper()), correction.times(b_z.upper()))
-        };
-        let tilted = q_omega.levelled_a_little(c_x, c_z);
-        self.orientation = match tilted.normalised_nearby() {
-            Some(orientation) => orientation,
-            None => normalised_anywhere(tilted),
-        };
+        self.orientation
+            .rotated_in_body(cosine_excess(h_squared), sine)
     }
 
-    /// ½ e/n.
+    /// The second half, with the force (counts, body frame):
+    ///
+    /// 2. a ← q_ω f q_ω⁻¹, and its error e of x and z;
+    /// 3. b ← b + k_l(e − b), and of that c = k_c b; in the first second c = e/n instead, and b is 0;
+    /// 4. q ← (1, c/2) q_ω, which [`Self::normalise`] makes of unit length.
     #[inline(always)]
-    fn starting(&mut self, x: Q<M, 12>, z: Q<M, 12>) -> (Q<M, 32>, Q<M, 32>) {
+    pub fn correct(&mut self, q_omega: Quaternion<M>, force: Vector<M, 15>) {
+        let [x, z] = lean(q_omega, force);
+        let low_pass = self.coefficients.low_pass;
+        let [b_x, b_z] = self.error;
+        let (b_x, b_z) = (b_x.towards(x, low_pass), b_z.towards(z, low_pass));
+        self.error = [b_x, b_z];
+        let correction = self.coefficients.correction;
+        let (c_x, c_z) = (correction.times(b_x.upper()), correction.times(b_z.upper()));
+        self.orientation = q_omega.levelled_a_little(c_x, c_z);
+    }
+
+    /// The same in the first second.
+    #[inline(always)]
+    pub fn correct_at_the_start(&mut self, q_omega: Quaternion<M>, force: Vector<M, 15>) {
         self.age += 1;
         let share: Q<M, 31> = per(NonZeroU32::new(self.age).unwrap_or(NonZeroU32::MIN));
-        let bits = self.coefficients.bits_per_g;
-        // A knock in the first samples must not turn the picture over. 1 g itself would be too large by a bit.
-        let one_g = Q::<M, 12>::from_bits((1 << (bits + 12)) - 1);
-        let half = |part: Q<M, 12>| {
-            let in_g = Q::<M, 30>::from_bits(part.limited(one_g).bits() << (18 - bits));
+        // A knock in the first samples must not turn the picture over.
+        let [c_x, c_z] = lean(q_omega, force).map(|part| {
+            let counts = part.limited(self.coefficients.one_g);
+            let in_g = Q::<M, 30>::from_bits(counts.bits() << self.coefficients.shift_to_g);
             Q::<M, 29>::product(in_g, share).read_as::<30>().finer()
-        };
-        (half(x), half(z))
+        });
+        self.orientation = q_omega.levelled_a_little(c_x, c_z);
+        if self.age < LARGE {
+            self.normalise();
+        }
+    }
+
+    /// To unit length: once in a block, for what a correction adds to the length is the square of it, less than
+    /// a millionth.
+    #[inline(always)]
+    pub fn normalise(&mut self) {
+        match self.orientation.normalised_nearby() {
+            Some(orientation) => self.orientation = orientation,
+            None => self.normalise_anywhere(),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn normalise_anywhere(&mut self) {
+        // A length of ½ to 2 is never left in a block.
+        if let Some(orientation) = self.orientation.normalised_anywhere() {
+            self.orientation = orientation;
+        }
     }
 
     /// Body to world.
@@ -165,7 +189,7 @@ impl<M: Multiply> Inclination<M> {
 
     /// b, counts, as x and z of the force in the world: how far from level the last seconds were.
     #[inline(always)]
-    pub fn error(&self) -> [Q<M, 12>; 2] {
+    pub fn error(&self) -> [Q<M, 10>; 2] {
         self.error.map(Wide::upper)
     }
 
@@ -191,10 +215,8 @@ impl<M: Multiply> Inclination<M> {
     }
 }
 
-/// After a correction of the start, or a turn by more than ten degrees in a sample.
-#[cold]
-#[inline(never)]
-fn normalised_anywhere<M: Multiply>(q: Quaternion<M>) -> Quaternion<M> {
-    // A length of ½ to 2 is never left by one sample.
-    q.normalised_anywhere().unwrap_or(Quaternion::IDENTITY)
+/// x and z of the force in the world.
+#[inline(always)]
+fn lean<M: Multiply>(q: Quaternion<M>, force: Vector<M, 15>) -> [Q<M, 10>; 2] {
+    [q.world_x().dot(force), q.world_z().dot(force)]
 }

@@ -3,7 +3,7 @@
 
 use super::super::division::per;
 use super::super::multiply::Multiply;
-use super::super::number::{Q, Wide};
+use super::super::number::Q;
 use super::super::vector::{Vector, WideVector};
 use super::parameters::{Rates, samples, seconds, squared, weight};
 use crate::fusion::parameters::{DECIMATION, low_pass_weight, size};
@@ -16,22 +16,44 @@ use core::num::NonZeroU32;
 #[derive(Clone, Copy, Debug)]
 pub struct Rest<M> {
     coefficients: Coefficients<M>,
-    /// Sums of rate and force of the block that is under way.
-    block: [Vector<M, 12>; 2],
-    /// Low-passed rate and force; none before the first block.
-    mean: Option<[WideVector<M, 47>; 2]>,
+    block: Block<M>,
+    /// Low-passed rate and force.
+    mean_rate: WideVector<M, 47>,
+    mean_force: WideVector<M, 47>,
+    /// Whether there was no block yet.
+    fresh: bool,
+    /// Rate and force of the last block.
+    rate: Vector<M, 15>,
+    force: Vector<M, 15>,
+    /// Whether its rate is close to the mean, and that is one of a rest.
+    close: bool,
+    /// Blocks of calm that make a rest.
+    enough: u32,
     /// Blocks in a row close to the mean.
     calm: u32,
     /// The low-passed force when they began.
     anchor: Vector<M, 15>,
-    /// Sum of the rates of those blocks until the rest begins, without the first third, and how many:
+    /// Mean of the rates of those blocks until the rest begins, without the first third, and of how many:
     /// what came before has died away by then.
-    settled: ([Wide<M, 15>; 3], u32),
-    /// Rate of the last block.
-    rate: Vector<M, 15>,
-    /// Whether it belongs to a rest.
+    settled: WideVector<M, 47>,
+    settled_count: NonZeroU32,
+    /// Whether the last block belongs to a rest.
     still: bool,
     motion: Motion,
+}
+
+/// Sums of the block that is under way.
+#[derive(Clone, Copy, Debug)]
+struct Block<M> {
+    rate: Vector<M, 12>,
+    force: Vector<M, 12>,
+}
+
+impl<M: Multiply> Block<M> {
+    const EMPTY: Self = Self {
+        rate: Vector::ZERO,
+        force: Vector::ZERO,
+    };
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -76,12 +98,18 @@ impl<M: Multiply> Rest<M> {
     pub fn new(parameters: &Parameters<f32>, rates: &Rates) -> Self {
         Self {
             coefficients: Coefficients::new(parameters, rates),
-            block: [Vector::ZERO; 2],
-            mean: None,
+            block: Block::EMPTY,
+            mean_rate: WideVector::ZERO,
+            mean_force: WideVector::ZERO,
+            fresh: true,
+            rate: Vector::ZERO,
+            force: Vector::ZERO,
+            close: false,
+            enough: u32::MAX,
             calm: 0,
             anchor: Vector::ZERO,
-            settled: ([Wide::from_bits(0); 3], 0),
-            rate: Vector::ZERO,
+            settled: WideVector::ZERO,
+            settled_count: NonZeroU32::MIN,
             still: false,
             motion: Motion::Moving { samples: 0 },
         }
@@ -91,24 +119,67 @@ impl<M: Multiply> Rest<M> {
         self.coefficients = Coefficients::new(parameters, rates);
     }
 
-    /// One sample, counts of the gyro with their bias and of the accelerometer, body frame.
+    /// One sample: counts of the gyro with their bias.
     #[inline(always)]
-    pub fn add(&mut self, gyro: [i16; 3], force: Vector<M, 15>) {
-        let [rate_sum, force_sum] = self.block;
-        self.block = [
-            rate_sum + Vector::from_counts(gyro),
-            force_sum + force.coarser(),
-        ];
+    pub fn add_rate(&mut self, gyro: [i16; 3]) {
+        self.block.rate = self.block.rate + Vector::from_counts(gyro);
     }
 
-    /// A block of [`DECIMATION`] samples has ended. `known` is the bias as measured in the last rest.
+    /// And those of the accelerometer, body frame.
     #[inline(always)]
-    pub fn look(&mut self, known: Option<Vector<M, 15>>) {
+    pub fn add_force(&mut self, force: Vector<M, 15>) {
+        self.block.force = self.block.force + force.coarser();
+    }
+
+    /// A block of [`DECIMATION`] samples has ended: its rate. `known` is the bias as measured in the last rest.
+    #[inline(always)]
+    pub fn look_at_rate(&mut self, known: Option<Vector<M, 15>>) {
         const { assert!(DECIMATION == 8) }
         // The sum of eight, read with three more fraction bits, is their mean.
-        let [rate, force] = self.block.map(Vector::read_as);
-        self.block = [Vector::ZERO; 2];
-        self.still = self.is_still(rate, force, known);
+        let (rate, force) = (self.block.rate.read_as(), self.block.force.read_as());
+        self.block = Block::EMPTY;
+        (self.rate, self.force) = (rate, force);
+        self.mean_rate = if self.fresh {
+            WideVector::from_upper(rate)
+        } else {
+            self.mean_rate.towards(rate, self.coefficients.low_pass)
+        };
+        let mean: Vector<M, 15> = self.mean_rate.upper();
+        let is_near =
+            |known: Vector<M, 15>| (mean - known).is_within(self.coefficients.largest_change);
+        let is_known = known.is_some_and(is_near);
+        self.enough = if known.is_none() || is_known {
+            self.coefficients.calm
+        } else {
+            self.coefficients.long
+        };
+        self.close = (rate - mean).squared() < self.coefficients.rate
+            && (is_known || mean.is_within(self.coefficients.plausible_bias));
+    }
+
+    /// Its force, with which it is known whether the block was still.
+    #[inline(always)]
+    pub fn look_at_force(&mut self) {
+        let force = self.force;
+        self.mean_force = if self.fresh {
+            WideVector::from_upper(force)
+        } else {
+            self.mean_force.towards(force, self.coefficients.low_pass)
+        };
+        self.fresh = false;
+        let mean: Vector<M, 15> = self.mean_force.upper();
+        if self.calm == 0 {
+            self.anchor = mean;
+        }
+        let close = self.close
+            && (force - mean).squared() < self.coefficients.force
+            && (mean - self.anchor).squared() < self.coefficients.wander;
+        if close {
+            self.calm = self.calm.saturating_add(1);
+        } else {
+            self.calm = 0;
+        }
+        self.still = self.calm >= self.enough;
     }
 
     /// What to make of it.
@@ -132,72 +203,38 @@ impl<M: Multiply> Rest<M> {
         self.motion
     }
 
-    /// As in the reference, which says why.
+    /// Keeps the rate of a block that may be the beginning of a rest.
     #[inline(always)]
-    fn is_still(
-        &mut self,
-        rate: Vector<M, 15>,
-        force: Vector<M, 15>,
-        known: Option<Vector<M, 15>>,
-    ) -> bool {
-        let Coefficients {
-            low_pass,
-            rate: rate_limit,
-            force: force_limit,
-            wander,
-            plausible_bias,
-            largest_change,
-            calm,
-            third,
-            long,
-        } = self.coefficients;
-        let [mean_rate, mean_force] = self
-            .mean
-            .unwrap_or_else(|| [rate, force].map(WideVector::from_upper));
-        let mean = [
-            mean_rate.towards(rate, low_pass),
-            mean_force.towards(force, low_pass),
-        ];
-        self.mean = Some(mean);
-        let [mean_rate, mean_force] = mean.map(WideVector::upper);
-        self.rate = rate;
-        let is_known = known.is_some_and(|known| (mean_rate - known).is_within(largest_change));
-        if self.calm == 0 {
-            self.anchor = mean_force;
-        }
-        let close = (rate - mean_rate).squared() < rate_limit
-            && (force - mean_force).squared() < force_limit
-            && (mean_force - self.anchor).squared() < wander
-            && (is_known || mean_rate.is_within(plausible_bias));
-        if close {
-            self.calm = self.calm.saturating_add(1);
-            if self.calm > third && matches!(self.motion, Motion::Moving { .. }) {
-                let ([x, y, z], count) = self.settled;
-                let sums = [x.with(rate.x), y.with(rate.y), z.with(rate.z)];
-                self.settled = (sums, count.saturating_add(1));
+    pub fn settle(&mut self) {
+        let third = self.coefficients.third;
+        match (self.calm.saturating_sub(third), self.motion) {
+            (0, _) => {}
+            (1, _) => {
+                self.settled = WideVector::from_upper(self.rate);
+                self.settled_count = NonZeroU32::MIN;
             }
-        } else {
-            self.forget();
+            (_, Motion::Still { samples }) if samples > DECIMATION => {}
+            _ => {
+                self.settled_count = self.settled_count.saturating_add(1);
+                self.settled = self.settled.towards(self.rate, per(self.settled_count));
+            }
         }
-        let enough = if known.is_none() || is_known {
-            calm
-        } else {
-            long
-        };
-        self.calm >= enough
+    }
+
+    /// Whether the last block is the first of a rest.
+    #[inline(always)]
+    pub fn begins(&self) -> bool {
+        matches!(self.motion, Motion::Still { samples } if samples <= DECIMATION)
     }
 
     /// The low-passed rate, body frame; zero before the first sample.
     pub fn mean_rate(&self) -> Vector<M, 15> {
-        self.mean.map_or(Vector::ZERO, |[rate, _]| rate.upper())
+        self.mean_rate.upper()
     }
 
     /// Mean rate of the calm that led to a rest, and of how many blocks.
     pub fn calm_rate(&self) -> (Vector<M, 15>, NonZeroU32) {
-        let (sums, count) = self.settled;
-        let count = NonZeroU32::new(count).unwrap_or(NonZeroU32::MIN);
-        let [x, y, z] = sums.map(|sum| mean(sum, count));
-        (Vector::new(x, y, z), count)
+        (self.settled.upper(), self.settled_count)
     }
 
     /// Rate of the last block.
@@ -207,31 +244,17 @@ impl<M: Multiply> Rest<M> {
     }
 
     #[inline(always)]
-    fn forget(&mut self) {
-        self.calm = 0;
-        self.settled = ([Wide::from_bits(0); 3], 0);
-    }
-
-    #[inline(always)]
     pub fn motion(&self) -> Motion {
         self.motion
     }
 
     /// Forgets what it saw, but not since when the board moves. A rest is over.
     pub fn restart(&mut self) {
-        self.block = [Vector::ZERO; 2];
-        self.mean = None;
+        self.block = Block::EMPTY;
+        self.mean_rate = WideVector::ZERO;
+        self.fresh = true;
+        self.close = false;
         self.still = false;
-        self.forget();
+        self.calm = 0;
     }
-}
-
-/// The sum of so many over their number.
-fn mean<M: Multiply>(sum: Wide<M, 15>, count: NonZeroU32) -> Q<M, 15> {
-    // The sum's first 31 bits are enough.
-    let size = sum.bits().unsigned_abs();
-    let shift = 33_u32.saturating_sub(size.leading_zeros());
-    let first = Q::<M, 15>::from_bits((sum.bits() >> shift) as i32);
-    let share: Q<M, 31> = per(count);
-    Q::from_bits((((first.wide(share) >> 16) << shift) >> 15) as i32)
 }
