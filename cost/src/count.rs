@@ -20,6 +20,10 @@ const KEPT_EVERY: usize = 8;
 /// The longest a program may take, on its own clock: no filter takes a millisecond a sample for more than ten of them.
 const LIMIT: u64 = 10 * SECOND;
 
+/// What `STATE` says in the program while a filter can be run, and when it has been.
+const READY: u32 = 1;
+const ENDED: u32 = 2;
+
 /// What the updates of a filter cost: all but the first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Count {
@@ -68,18 +72,8 @@ impl Count {
 ///
 /// In words, if the program is not one of ours, breaks a rule of the chip or does not come to its end.
 pub fn count(image: &Path, subject: &Subject) -> Result<Count, Box<dyn Error>> {
-    let image = Image::open(image)?;
-    let name = subject.name;
-    let run = image
-        .address_of(&format!("{name}::run"))
-        .ok_or_else(|| format!("the program has no filter {name}; build it again"))?;
-    // The sensor plays no part.
-    let mut setup = Setup::new(Box::new(Turns::new(1e6, 0.0)));
-    setup.timed_function = format!("{name}::update");
-    let mut board = Board::new(image, setup);
-    until(&mut board, 1, name)?;
-    board.jump(run);
-    until(&mut board, 2, name)?;
+    let mut board = started(image, subject)?;
+    until(&mut board, ENDED, subject.name)?;
 
     let calls = board.measure().calls;
     let address = board
@@ -99,6 +93,41 @@ pub fn count(image: &Path, subject: &Subject) -> Result<Count, Box<dyn Error>> {
         cycles: calls.cycles,
         orientations,
     })
+}
+
+/// Instructions of a sample by the function they are executed in, the most first. What feeds the filter and keeps its
+/// orientations is among them.
+///
+/// # Errors
+///
+/// As of [`count`].
+pub fn profile(image: &Path, subject: &Subject) -> Result<Vec<(String, f64)>, Box<dyn Error>> {
+    let mut board = started(image, subject)?;
+    board.profile();
+    until(&mut board, ENDED, subject.name)?;
+    let mut functions: Vec<_> = board
+        .profiled()
+        .into_iter()
+        .map(|(name, share)| (name, share.instructions as f64 / SAMPLES as f64))
+        .collect();
+    functions.sort_by(|(_, one), (_, other)| other.total_cmp(one));
+    Ok(functions)
+}
+
+/// A board at the beginning of the filter.
+fn started(image: &Path, subject: &Subject) -> Result<Board, Box<dyn Error>> {
+    let image = Image::open(image)?;
+    let name = subject.name;
+    let run = image
+        .address_of(&format!("{name}::run"))
+        .ok_or_else(|| format!("the program has no filter {name}; build it again"))?;
+    // The sensor plays no part.
+    let mut setup = Setup::new(Box::new(Turns::new(1e6, 0.0)));
+    setup.timed_function = format!("{name}::update");
+    let mut board = Board::new(image, setup);
+    until(&mut board, READY, name)?;
+    board.jump(run);
+    Ok(board)
 }
 
 /// Runs until the program says `state`.

@@ -24,6 +24,10 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 
+    /// Print where the instructions of one filter go, by the name it has in the JSON, and nothing else
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["json", "ours"])]
+    profile: Option<String>,
+
     /// Leave out the filters of others, which take most of the time
     #[arg(long)]
     ours: bool,
@@ -48,6 +52,9 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    if let Some(name) = &arguments.profile {
+        return profile(name);
+    }
     let mut rows = rows(&OURS)?;
     if !arguments.ours {
         rows.extend(self::rows(&PEERS)?);
@@ -73,6 +80,30 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
                 path.display()
             )
         })?;
+    }
+    Ok(())
+}
+
+/// Functions of a profile that are told.
+const PROFILE_ROWS: usize = 20;
+
+fn profile(name: &str) -> Result<(), Box<dyn Error>> {
+    let programs = [OURS, PEERS];
+    let mut all = programs.iter().flat_map(|program| {
+        program
+            .subjects
+            .iter()
+            .map(move |subject| (program, subject))
+    });
+    let Some((program, subject)) = all.clone().find(|(_, subject)| subject.name == name) else {
+        let names: Vec<_> = all.by_ref().map(|(_, subject)| subject.name).collect();
+        return Err(format!("no filter is called {name}; there are {}", names.join(", ")).into());
+    };
+    let functions = count::profile(&program.build()?, subject)?;
+    let mut out = io::stdout().lock();
+    writeln!(out, "instructions of a sample: {}", subject.label)?;
+    for (function, instructions) in functions.iter().take(PROFILE_ROWS) {
+        writeln!(out, "{instructions:>10.1}  {function}")?;
     }
     Ok(())
 }

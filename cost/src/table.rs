@@ -77,7 +77,7 @@ pub fn filters(out: &mut impl Write, rows: &[Row], yardstick: f64) -> io::Result
 pub fn firmware(out: &mut impl Write, runs: &[(Mode, Figures)]) -> io::Result<()> {
     writeln!(
         out,
-        "{:<52} {:>12} {:>8} {:>24} {:>8}",
+        "{:<52} {:>12} {:>8} {:>26} {:>8}",
         "the tracker, time by the pessimistic end",
         "CPU load",
         "I2C",
