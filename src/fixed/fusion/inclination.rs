@@ -33,7 +33,7 @@ struct Coefficients<M> {
     low_pass: Q<M, 32>,
     /// ½ k_c per count: half of the share of it that is corrected in a sample.
     correction: Scaled<M>,
-    /// Just below 1 g: that itself would be too large by a bit for what is made of it in the start.
+    /// 1 g.
     one_g: Q<M, 10>,
     /// From there to Q30, in g.
     shift_to_g: u32,
@@ -86,7 +86,7 @@ impl<M: Multiply> Coefficients<M> {
             half_angle_per_count: half_angle_per_count(rates.ranges.gyro, rates.sample),
             low_pass: weight(tilt_low_pass_weight(parameters, period)),
             correction: Scaled::new(per_count.min(most)),
-            one_g: Q::from_bits((1 << (bits_per_g + 10)) - 1),
+            one_g: Q::from_bits(1 << (bits_per_g + 10)),
             shift_to_g: 20 - bits_per_g,
             start: samples(parameters.start_time, rates.sample),
         }
