@@ -121,7 +121,7 @@ impl<T: RealField + Copy> Fusion<T> {
         self.step = (self.step + 1) % DECIMATION;
         match self.step {
             0 => self.rest.look_at_rate(self.bias.at_rest()),
-            1 => self.look_at_force(),
+            1 if self.rest.has_looked() => self.look_at_force(),
             2 => self.rest.settle(),
             3 if self.is_still() => self.follow_rest(),
             4 => self.integral.follow(&self.inclination),

@@ -67,10 +67,11 @@ pub fn reciprocal_length<M: Multiply>(e: Q<M, 28>) -> Option<Q<M, 29>> {
     }
 }
 
-/// 1/n; just below 1 for n = 1 and, of 32 fraction bits, just below ½ for n = 2 or less.
+/// 1/n, but for n = 1 less by 2⁻²⁶, so that a product with one and a little more stays below one; and of 32
+/// fraction bits just below ½ for n = 2 or less.
 #[inline(always)]
 pub fn per<M: Multiply, const BITS: u32>(n: NonZeroU32) -> Q<M, BITS> {
     const { assert!(BITS == 31 || BITS == 32) }
-    let quotient = (u32::MAX >> (32 - BITS)) / n;
+    let quotient = ((u32::MAX - 63) >> (32 - BITS)) / n;
     Q::from_bits(quotient.min(i32::MAX as u32) as i32)
 }

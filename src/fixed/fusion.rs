@@ -147,7 +147,7 @@ impl<M: Multiply> Fusion<M> {
         self.step = (self.step + 1) % DECIMATION;
         match self.step {
             0 => self.look_at_rate(),
-            1 => self.look_at_force(),
+            1 if self.rest.has_looked() => self.look_at_force(),
             2 => self.settle(),
             3 if self.is_still() => self.follow_rest(),
             4 => self.follow_axes(),

@@ -182,27 +182,30 @@ pub fn levelled<M: Multiply, const BITS: u32>(
 /// (x, z) / √(x² + z²), and the root, for x and z up to ½; none if both are zero.
 #[inline(always)]
 pub fn horizontal<M: Multiply>(x: Q<M, 30>, z: Q<M, 30>) -> Option<(Q<M, 30>, Q<M, 30>, Q<M, 30>)> {
-    let largest = x.bits().unsigned_abs() | z.bits().unsigned_abs();
-    if largest == 0 {
+    let (x, z) = (x.bits(), z.bits());
+    if x | z == 0 {
         return None;
     }
+    // As many zeros as the larger has: inverting what is negative makes it shorter by one at most.
+    let largest = (x ^ (x >> 31)) | (z ^ (z >> 31));
     // The larger becomes ½ to 1 of its own: beside a large vertical part both may be small.
     let shift = largest.leading_zeros().saturating_sub(2);
-    let (x, z) = (x.bits() << shift, z.bits() << shift);
-    let square = i64::from(x) * i64::from(x) + i64::from(z) * i64::from(z);
+    let (x, z) = (x << shift, z << shift);
+    let square = M::add_wide(M::add_wide(0, x, x), z, z);
     // From ¼ to below 1, by halving both if need be.
-    let halved = u32::from(square >= 1 << 60);
-    let (x, z) = (
-        Q::<M, 30>::from_bits(x >> halved),
-        Q::<M, 30>::from_bits(z >> halved),
-    );
-    let square = Q::<M, 31>::from_bits((square >> (29 + 2 * halved)) as i32);
+    let (x, z, square, halved) = if square >= 1 << 60 {
+        (x >> 1, z >> 1, square >> 31, 1)
+    } else {
+        (x, z, square >> 29, 0)
+    };
+    let square = Q::<M, 31>::from_bits(square as i32);
     let per_root = reciprocal_root(square);
     let root: Q<M, 30> = Q::<M, 28>::product(square, per_root).finer();
+    let unit = |part: i32| Q::<M, 27>::product(Q::<M, 30>::from_bits(part), per_root).finer();
     Some((
-        Q::<M, 27>::product(x, per_root).finer(),
-        Q::<M, 27>::product(z, per_root).finer(),
-        Q::from_bits(((i64::from(root.bits()) << halved) >> shift) as i32),
+        unit(x),
+        unit(z),
+        Q::from_bits((root.bits() << halved) >> shift),
     ))
 }
 

@@ -126,6 +126,13 @@ impl<M: Multiply, const BITS: u32> Q<M, BITS> {
         Self::from_bits(self.bits.min(limit.bits).max(-limit.bits))
     }
 
+    /// Whether it is not beyond −`limit` and `limit`, which is not negative.
+    #[inline(always)]
+    pub fn is_within(self, limit: Self) -> bool {
+        // Moved up by the limit, what is within is no larger than twice that, and what is not wraps around.
+        self.bits.wrapping_add(limit.bits) as u32 <= (limit.bits as u32).wrapping_mul(2)
+    }
+
     /// The exact product, with the fraction bits of both.
     #[inline(always)]
     pub fn wide<const B: u32>(self, other: Q<M, B>) -> i64 {

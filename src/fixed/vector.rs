@@ -63,12 +63,7 @@ impl<M: Multiply, const BITS: u32> Vector<M, BITS> {
     /// Whether no part is beyond −`limit` and `limit`, which is not negative.
     #[inline(always)]
     pub fn is_within(self, limit: Q<M, BITS>) -> bool {
-        let limit = limit.bits();
-        // Moved up by the limit, what is within is no larger than twice that, and what is not wraps around.
-        let within = |part: Q<M, BITS>| {
-            part.bits().wrapping_add(limit) as u32 <= (limit as u32).wrapping_mul(2)
-        };
-        within(self.x) && within(self.y) && within(self.z)
+        self.x.is_within(limit) && self.y.is_within(limit) && self.z.is_within(limit)
     }
 
     /// The sum of the squares.

@@ -157,9 +157,7 @@ impl<T: RealField + Copy> Rest<T> {
             force: limit,
             ..
         } = self.coefficients;
-        let Some((mean_rate, mean)) = self.mean else {
-            return;
-        };
+        let (mean_rate, mean) = self.mean.unwrap_or((self.rate, self.force));
         let mean = mean + (self.force - mean) * low_pass;
         self.mean = Some((mean_rate, mean));
         if self.calm == 0 {
@@ -174,6 +172,11 @@ impl<T: RealField + Copy> Rest<T> {
             self.calm = 0;
         }
         self.still = self.calm >= self.enough;
+    }
+
+    /// Whether there was a block to look at since the start.
+    pub fn has_looked(&self) -> bool {
+        self.mean.is_some()
     }
 
     /// What to make of it.
@@ -236,8 +239,6 @@ impl<T: RealField + Copy> Rest<T> {
     pub fn restart(&mut self) {
         self.block = (Vector3::zeros(), Vector3::zeros());
         self.mean = None;
-        self.close = false;
-        self.still = false;
         self.calm = 0;
     }
 }

@@ -76,12 +76,12 @@ impl<M: Multiply> Heading<M> {
         let [cos, sin] = self.turn.cos_and_sin();
         let sine = Q::<M, 26>::product(cos, x).plus(sin, z);
         let cosine = Q::<M, 26>::product(cos, z).minus(sin, x);
-        // North is −z. Half of 1 would be too large by a bit.
-        let one = const { Q::<M, 30>::from_bits((1 << 30) - 8) };
+        // North is −z.
+        let one = const { Q::<M, 30>::constant(1.0) };
         let error = match (cosine.bits() > 0, sine.bits() < 0) {
             (true, true) => -one,
             (true, false) => one,
-            (false, _) => sine.finer::<30>().limited(one),
+            (false, _) => sine.finer::<30>(),
         };
         let share: Q<M, 31> = per(NonZeroU32::new(self.age).unwrap_or(NonZeroU32::MIN));
         let share = Q::<M, 31>::from_bits(share.bits().max(self.low_pass.bits()));

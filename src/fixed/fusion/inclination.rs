@@ -33,7 +33,7 @@ struct Coefficients<M> {
     low_pass: Q<M, 32>,
     /// ½ k_c per count: half of the share of it that is corrected in a sample.
     correction: Scaled<M>,
-    /// Just below 1 g: that itself would be too large by a bit for what is made of it in the start.
+    /// 1 g.
     one_g: Q<M, 10>,
     /// From there to Q30, in g.
     shift_to_g: u32,
@@ -86,7 +86,7 @@ impl<M: Multiply> Coefficients<M> {
             half_angle_per_count: half_angle_per_count(rates.ranges.gyro, rates.sample),
             low_pass: weight(tilt_low_pass_weight(parameters, period)),
             correction: Scaled::new(per_count.min(most)),
-            one_g: Q::from_bits((1 << (bits_per_g + 10)) - 1),
+            one_g: Q::from_bits(1 << (bits_per_g + 10)),
             shift_to_g: 20 - bits_per_g,
             start: samples(parameters.start_time, rates.sample),
         }
@@ -150,10 +150,14 @@ impl<M: Multiply> Inclination<M> {
     pub fn correct_at_the_start(&mut self, q_omega: Quaternion<M>, force: Vector<M, 15>) {
         self.age += 1;
         let share: Q<M, 31> = per(NonZeroU32::new(self.age).unwrap_or(NonZeroU32::MIN));
+        let one_g = self.coefficients.one_g;
+        let mut lean = lean(q_omega, force);
         // A knock in the first samples must not turn the picture over.
-        let [c_x, c_z] = lean(q_omega, force).map(|part| {
-            let counts = part.limited(self.coefficients.one_g);
-            let in_g = Q::<M, 30>::from_bits(counts.bits() << self.coefficients.shift_to_g);
+        if !(lean[0].is_within(one_g) && lean[1].is_within(one_g)) {
+            lean = limited(lean, one_g);
+        }
+        let [c_x, c_z] = lean.map(|part| {
+            let in_g = Q::<M, 30>::from_bits(part.bits() << self.coefficients.shift_to_g);
             Q::<M, 29>::product(in_g, share).read_as::<30>().finer()
         });
         self.orientation = q_omega.levelled_a_little(c_x, c_z);
@@ -219,4 +223,10 @@ impl<M: Multiply> Inclination<M> {
 #[inline(always)]
 fn lean<M: Multiply>(q: Quaternion<M>, force: Vector<M, 15>) -> [Q<M, 10>; 2] {
     [q.world_x().dot(force), q.world_z().dot(force)]
+}
+
+#[cold]
+#[inline(never)]
+fn limited<M: Multiply>(lean: [Q<M, 10>; 2], limit: Q<M, 10>) -> [Q<M, 10>; 2] {
+    lean.map(|part| part.limited(limit))
 }

@@ -139,11 +139,13 @@ impl<M: Multiply> Rest<M> {
         let (rate, force) = (self.block.rate.read_as(), self.block.force.read_as());
         self.block = Block::EMPTY;
         (self.rate, self.force) = (rate, force);
-        self.mean_rate = if self.fresh {
-            WideVector::from_upper(rate)
+        if self.fresh {
+            self.fresh = false;
+            self.mean_rate = WideVector::from_upper(rate);
+            self.mean_force = WideVector::from_upper(force);
         } else {
-            self.mean_rate.towards(rate, self.coefficients.low_pass)
-        };
+            self.mean_rate = self.mean_rate.towards(rate, self.coefficients.low_pass);
+        }
         let mean: Vector<M, 15> = self.mean_rate.upper();
         let is_near =
             |known: Vector<M, 15>| (mean - known).is_within(self.coefficients.largest_change);
@@ -161,12 +163,7 @@ impl<M: Multiply> Rest<M> {
     #[inline(always)]
     pub fn look_at_force(&mut self) {
         let force = self.force;
-        self.mean_force = if self.fresh {
-            WideVector::from_upper(force)
-        } else {
-            self.mean_force.towards(force, self.coefficients.low_pass)
-        };
-        self.fresh = false;
+        self.mean_force = self.mean_force.towards(force, self.coefficients.low_pass);
         let mean: Vector<M, 15> = self.mean_force.upper();
         if self.calm == 0 {
             self.anchor = mean;
@@ -180,6 +177,12 @@ impl<M: Multiply> Rest<M> {
             self.calm = 0;
         }
         self.still = self.calm >= self.enough;
+    }
+
+    /// Whether there was a block to look at since the start.
+    #[inline(always)]
+    pub fn has_looked(&self) -> bool {
+        !self.fresh
     }
 
     /// What to make of it.
@@ -253,8 +256,6 @@ impl<M: Multiply> Rest<M> {
         self.block = Block::EMPTY;
         self.mean_rate = WideVector::ZERO;
         self.fresh = true;
-        self.close = false;
-        self.still = false;
         self.calm = 0;
     }
 }
