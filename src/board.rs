@@ -24,6 +24,8 @@ pub mod led;
 
 pub mod loader;
 
+pub mod multiply;
+
 pub mod store;
 
 pub mod timer;

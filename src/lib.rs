@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! counts ──► sensor ──► calibration ──► orientation ──► wire ──► (USB) ──► viewer
-//! i16×6      units      corrected       quaternion      line               picture
+//! i16×6      units      corrected       quaternion      bytes              picture
 //! ```
 //!
 //! Every arrow is one function call, and no module knows its right-hand neighbour.
@@ -93,7 +93,7 @@ pub mod virtual_gyro;
 /// Numbers as people write them.
 pub mod decimal;
 
-/// Lines of text for the host, to the byte.
+/// Lines and frames for the host, to the byte, and how a host reads them.
 pub mod wire;
 
 /// Keys from the host.

@@ -4,8 +4,8 @@
 //! An alarm starts each burst just behind the sensor's data-ready, and DMA carries it in; the filter runs
 //! here, and here the core sleeps when there is nothing to do. A line goes to the USB controller in the turn
 //! that makes it. USB has an interrupt of its own, below the sensor's and above the filter, so neither a
-//! slow host nor a busy filter delays a sample. The
-//! watchdog is fed only after a sample has come in and gone through the filter.
+//! slow host nor a busy filter delays a sample. The watchdog is fed only after a sample has come in and
+//! gone through the filter.
 
 #![no_std]
 #![no_main]
@@ -16,6 +16,7 @@ mod board;
 use core::convert::Infallible;
 
 use board::breadcrumb::{self, Stage};
+use board::multiply::Instructions;
 use board::{Board, Fault};
 use panic_halt as _; // a panic stops the core; the watchdog restarts it and the breadcrumb tells
 use vrduino::imu::RANGES;
@@ -27,7 +28,7 @@ const RETRY_MS: u32 = 1000;
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let mut board = Board::take();
-    let mut tracker = Tracker::new(RANGES);
+    let mut tracker = Tracker::<Instructions>::with(RANGES);
     if let Some(record) = board.load_calibration() {
         tracker.set_calibration(&record);
     }
@@ -40,8 +41,9 @@ fn main() -> ! {
 
 /// Tracks until the sensor is lost.
 ///
-/// One turn for each sample of the sensor, a thousand a second; a turn that comes late finds its sample in a queue and catches up.
-fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> {
+/// One turn for each sample of the sensor, a thousand a second; a turn that comes late finds its sample in a queue and
+/// catches up.
+fn track(board: &mut Board, tracker: &mut Tracker<Instructions>) -> Result<Infallible, Fault> {
     let adjustment = board.start_imu()?;
     tracker.set_magnetometer(adjustment);
     tracker.resume();
@@ -57,9 +59,11 @@ fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> 
         breadcrumb::mark(Stage::Filter);
         let health = board.health();
         tracker.timed(&board.imu.timing);
-        tracker.update(&board.imu.sample, field, &health, &mut |line| {
-            board.usb.send(line)
-        });
+        let sample = &board.imu.sample;
+        let frame = tracker.update(sample, field, &health, &mut |line| board.usb.send(line));
+        if let Some(frame) = frame {
+            board.usb.send(&frame);
+        }
         board.end_of_turn();
     }
 }

@@ -140,6 +140,16 @@ impl GyroRange {
         }
     }
 
+    /// Counts of 1 °/s.
+    pub const fn counts_per_dps(self) -> f32 {
+        match self {
+            Self::Dps250 => 131.072,
+            Self::Dps500 => 65.536,
+            Self::Dps1000 => 32.768,
+            Self::Dps2000 => 16.384,
+        }
+    }
+
     const fn rad_per_s_per_count(self) -> f64 {
         self.max_dps() * RADIANS_PER_DEGREE / COUNTS_PER_RANGE
     }
@@ -170,6 +180,16 @@ impl AccelRange {
             Self::G4 => 4.0,
             Self::G8 => 8.0,
             Self::G16 => 16.0,
+        }
+    }
+
+    /// Counts of 1 g.
+    pub const fn counts_per_g(self) -> u16 {
+        match self {
+            Self::G2 => 16384,
+            Self::G4 => 8192,
+            Self::G8 => 4096,
+            Self::G16 => 2048,
         }
     }
 

@@ -26,3 +26,5 @@ mod store;
 
 #[path = "boot/sampling.rs"]
 mod sampling;
+#[path = "boot/streams.rs"]
+mod streams;

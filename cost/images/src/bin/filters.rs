@@ -1,0 +1,28 @@
+//! Our filters, and the course's filter as others write it.
+
+#![no_std]
+#![no_main]
+
+#[path = "../../../../src/board/multiply.rs"]
+mod multiply;
+
+use multiply::Instructions;
+use panic_halt as _;
+use vrduino::fixed::multiply::Portable;
+use vrduino_cost_images::head::HEAD;
+use vrduino_cost_images::ours::{Course, CourseInFixedPoint, Default};
+use vrduino_cost_images::straightforward::Straightforward;
+use vrduino_cost_images::textbook::Textbook;
+
+vrduino_cost_images::filters! {
+    #[unsafe(link_section = ".data.filter")]
+    course_fixed: CourseInFixedPoint<Instructions>, on HEAD;
+    #[unsafe(link_section = ".data.filter")]
+    course_fixed_portable: CourseInFixedPoint<Portable>, on HEAD;
+    course_f32: Course<f32>, on HEAD;
+    default_f32: Default<f32, false>, on HEAD;
+    default_f32_compass: Default<f32, true>, on HEAD;
+    textbook_f64: Textbook<f64>, on HEAD;
+    textbook_f32: Textbook<f32>, on HEAD;
+    straightforward: Straightforward, on HEAD;
+}
