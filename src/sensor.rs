@@ -109,7 +109,8 @@ impl RawSample {
         self.gyro
             .iter()
             .chain(&self.accel)
-            .any(|&counts| counts == i16::MAX || counts == i16::MIN)
+            // One comparison for both ends, which are neighbours where the count wraps.
+            .any(|&counts| (counts as u16).wrapping_sub(i16::MAX as u16) <= 1)
     }
 }
 

@@ -121,6 +121,7 @@ impl DataReady {
         self.seek();
     }
 
+    #[cold]
     fn seek(&mut self) {
         self.phase = Phase::Seeking;
         self.period = self.us(NOMINAL_US);
@@ -154,6 +155,7 @@ impl DataReady {
     }
 
     /// It was asked for at the moment `at`, and was not there yet.
+    #[cold]
     pub fn not_yet(&mut self, at: u32) -> Early {
         let at = at << FRACTION;
         self.not_yet = Some(at);
@@ -168,6 +170,7 @@ impl DataReady {
     }
 
     /// The sample could not be read, the bus being in error or in use: it is lost. When will it have been ready?
+    #[cold]
     pub fn miss(&mut self) -> Timing {
         self.lost += 1;
         self.not_yet = None;
@@ -208,6 +211,7 @@ impl DataReady {
     ///
     /// A sensor that is slower is followed all the same, by the samples that come twice. With one that is faster nothing
     /// is heard of those that are left out: they are reckoned from the period that was measured before.
+    #[cold]
     pub fn read_at(&mut self, at: u32, new: bool) -> Timing {
         let at = at << FRACTION;
         self.not_yet = None;
@@ -282,6 +286,7 @@ impl DataReady {
     }
 
     /// The sample became ready between the moments `before` and `after`.
+    #[cold]
     fn edge(&mut self, before: u32, after: u32) {
         // The sample before was ready when it was asked for, so this one is ready within the
         // slide, and what the period is uncertain by, which is less.
