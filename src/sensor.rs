@@ -105,6 +105,7 @@ impl RawSample {
     }
 
     /// True if any axis stands at the end of its range: the true value may lie beyond it.
+    #[inline(always)]
     pub fn clipped(&self) -> bool {
         // Both ends become the upper one. Written out, for it is asked of every sample.
         let end = |counts: i16| counts ^ (counts >> 15) == i16::MAX;
