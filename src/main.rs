@@ -4,8 +4,8 @@
 //! An alarm starts each burst just behind the sensor's data-ready, and DMA carries it in; the filter runs
 //! here, and here the core sleeps when there is nothing to do. A line goes to the USB controller in the turn
 //! that makes it. USB has an interrupt of its own, below the sensor's and above the filter, so neither a
-//! slow host nor a busy filter delays a sample. The
-//! watchdog is fed only after a sample has come in and gone through the filter.
+//! slow host nor a busy filter delays a sample. The watchdog is fed only after a sample has come in and
+//! gone through the filter.
 
 #![no_std]
 #![no_main]
@@ -54,14 +54,15 @@ fn track(board: &mut Board, tracker: &mut Tracker<Instructions>) -> Result<Infal
 /// up.
 #[inline(never)] // in SRAM, see memory.x
 fn turn(board: &mut Board, tracker: &mut Tracker<Instructions>) -> Result<(), Fault> {
-    let (sample, timing, field) = board.next_sample()?;
+    let field = board.next_sample()?;
     if let Some(command) = board.usb.command() {
         obey(board, tracker, command);
     }
     breadcrumb::mark(Stage::Filter);
     let health = board.health();
-    tracker.timed(&timing);
-    let frame = tracker.update(&sample, field, &health, &mut |line| board.usb.send(line));
+    tracker.timed(&board.imu.timing);
+    let sample = &board.imu.sample;
+    let frame = tracker.update(sample, field, &health, &mut |line| board.usb.send(line));
     if let Some(frame) = frame {
         board.usb.send(&frame);
     }
