@@ -11,7 +11,7 @@
 //! | `inclination` | how far from level, eq. 20–23 |
 //! | `complementary` | the filter of eq. 24 |
 //! | `turn` | turns about the vertical |
-//! | `measurement` | forces and fields that have been corrected |
+//! | `measurement`, `affine` | forces and fields, and how they are corrected |
 //! | `fusion` | the estimator that is streamed by default |
 //!
 //! # Formats
@@ -54,5 +54,7 @@ pub mod complementary;
 mod turn;
 
 pub mod measurement;
+
+pub mod affine;
 
 pub mod fusion;
