@@ -10,7 +10,7 @@ use vrduino::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample};
 use vrduino::units::{AngularRate, MagneticField, Seconds};
 
-const SEEDS: u64 = 20;
+const SEEDS: u64 = 12;
 /// A field comes with every tenth sample.
 const FIELD: usize = 10;
 /// What the integers may be off by, in degrees: six axes, slow motion without noise, and nine axes in the
