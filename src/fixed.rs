@@ -1,5 +1,6 @@
 //! Estimators in integers, for a core without a floating-point unit: the same filters as in
-//! [`orientation`](crate::orientation), which define what is right, at a hundredth of the cost.
+//! [`orientation`](crate::orientation) and [`fusion`](crate::fusion), which define what is right, at a hundredth of
+//! the cost.
 //!
 //! | file | what it is |
 //! |---|---|

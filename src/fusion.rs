@@ -95,8 +95,9 @@ impl<T: RealField + Copy> Fusion<T> {
     }
 
     /// The time between two samples as it was measured, which is what the gyro turns for. The filters go
-    /// on with weights for the nominal one: a hundredth of a time constant.
+    /// on with weights for the nominal one until they are tuned: a hundredth of a time constant.
     pub fn set_sample_period(&mut self, period: Seconds<T>) {
+        self.rates.sample = period;
         self.inclination.set_sample_period(period);
     }
 

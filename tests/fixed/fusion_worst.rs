@@ -60,8 +60,7 @@ fn the_ends_of_every_range_leave_a_unit_quaternion() {
             }
             let field = (number % 3 == 0).then(|| Field::from_parts_of_microtesla(field));
             fusion.update(&sample, field);
-            // Between two of the steps that bring it there.
-            assert_unit(fusion.bits(), 0.01, (ranges, number, sample));
+            assert_unit(fusion.bits(), 1e-6, (ranges, number, sample));
         }
     }
 }
@@ -108,7 +107,7 @@ fn odd_parameters_leave_a_unit_quaternion() {
                 &sample(gyro, accel),
                 Some(Field::from_parts_of_microtesla(field)),
             );
-            assert_unit(fusion.bits(), 0.2, (&parameters, rates, number));
+            assert_unit(fusion.bits(), 1e-6, (&parameters, rates, number));
         }
     }
 }
