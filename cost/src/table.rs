@@ -77,11 +77,11 @@ pub fn filters(out: &mut impl Write, rows: &[Row], yardstick: f64) -> io::Result
 pub fn firmware(out: &mut impl Write, runs: &[(Mode, Figures)]) -> io::Result<()> {
     writeln!(
         out,
-        "{:<52} {:>12} {:>8} {:>26} {:>8}",
+        "{:<42} {:>12} {:>6} {:>39} {:>8}",
         "the tracker, time by the pessimistic end",
         "CPU load",
         "I2C",
-        "to USB: median, 99 %, most",
+        "data-ready to USB: median, 99 %, most",
         "stack"
     )?;
     for (mode, figures) in runs {
@@ -92,7 +92,7 @@ pub fn firmware(out: &mut impl Write, runs: &[(Mode, Figures)]) -> io::Result<()
         });
         writeln!(
             out,
-            "{:<52} {:>12} {:>8} {:>26} {:>6} B",
+            "{:<42} {:>12} {:>6} {:>39} {:>6} B",
             mode.label,
             format!("{:.1}-{:.1} %", least * 100.0, greatest * 100.0),
             format!("{:.0} %", figures.bus * 100.0),

@@ -16,7 +16,7 @@ use vrduino_emulator::time::MILLISECOND;
 /// Instructions of a whole update, bias and parameters included, up to 45° from level: always the same number.
 const NEAR_LEVEL: u64 = 200;
 /// Most that any input may cost.
-const WORST: u64 = 1_000;
+const WORST: u64 = 600;
 
 fn path() -> &'static PathBuf {
     static PATH: OnceLock<PathBuf> = OnceLock::new();

@@ -72,7 +72,12 @@ impl<F: Gains, const COMPASS: bool> Filter for OfAhrs<F, COMPASS> {
     fn orientation(&self) -> [f64; 4] {
         let [w, x, y, z] = self.1.map(f64::from);
         let half = core::f64::consts::FRAC_1_SQRT_2;
-        [half * (w - z), half * (x - y), half * (y + x), half * (z + w)]
+        [
+            half * (w - z),
+            half * (x - y),
+            half * (y + x),
+            half * (z + w),
+        ]
     }
 }
 
@@ -118,8 +123,8 @@ impl<const COMPASS: bool> Filter for Vqf<COMPASS> {
 
     #[inline]
     fn update(&mut self, counts: &Counts) {
-        let field = (COMPASS && counts.field_is_new)
-            .then(|| scaled(counts.field, MICROTESLA_PER_COUNT));
+        let field =
+            (COMPASS && counts.field_is_new).then(|| scaled(counts.field, MICROTESLA_PER_COUNT));
         self.0.update(
             scaled(counts.sample.gyro, RADIANS_PER_COUNT),
             scaled(counts.sample.accel, G_PER_COUNT * STANDARD_GRAVITY),
@@ -128,7 +133,11 @@ impl<const COMPASS: bool> Filter for Vqf<COMPASS> {
     }
 
     fn orientation(&self) -> [f64; 4] {
-        let q = if COMPASS { self.0.quat_9d() } else { self.0.quat_6d() };
+        let q = if COMPASS {
+            self.0.quat_9d()
+        } else {
+            self.0.quat_6d()
+        };
         [q.0, q.1, q.2, q.3].map(f64::from)
     }
 }
