@@ -6,9 +6,13 @@
 //! | `multiply` | the one operation all is made of, which a board can do its own way |
 //! | `number` | numbers whose fraction bits are in their type |
 //! | `vector`, `quaternion` | three and four of them |
+//! | `gyro` | the angles of a sample, of which nothing is rounded off |
 //! | `half_angle`, `arc`, `division` | small rotations, arcs and quotients without a library |
 //! | `inclination` | how far from level, eq. 20–23 |
 //! | `complementary` | the filter of eq. 24 |
+//! | `turn` | turns about the vertical |
+//! | `measurement` | forces and fields that have been corrected |
+//! | `fusion` | the estimator that is streamed by default |
 //!
 //! # Formats
 //!
@@ -35,6 +39,8 @@ pub mod vector;
 
 pub mod quaternion;
 
+mod gyro;
+
 mod half_angle;
 
 mod arc;
@@ -44,3 +50,9 @@ mod division;
 mod inclination;
 
 pub mod complementary;
+
+mod turn;
+
+pub mod measurement;
+
+pub mod fusion;

@@ -23,13 +23,13 @@
 //!
 //! [`Complementary`]: crate::orientation::complementary::Complementary
 
-mod bias;
-mod disturbance;
-mod heading;
+pub(crate) mod bias;
+pub(crate) mod disturbance;
+pub(crate) mod heading;
 mod inclination;
-mod integral;
-mod parameters;
-mod rest;
+pub(crate) mod integral;
+pub(crate) mod parameters;
+pub(crate) mod rest;
 
 pub use bias::{Bias, Source};
 pub use disturbance::FieldVerdict;
@@ -59,6 +59,9 @@ pub struct Fusion<T: RealField> {
     heading: Heading<T>,
     /// The rate of the last sample, without bias: the lead goes on with it.
     rate: AngularRate<T>,
+    /// Samples in the block that is under way. What is looked at once in a block is spread over its
+    /// first samples, so that none takes long.
+    step: u32,
     started: bool,
     refused: u32,
 }
@@ -75,6 +78,7 @@ impl<T: RealField + Copy> Fusion<T> {
             integral: Integral::new(parameters, rates),
             heading: Heading::new(parameters, rates.field),
             rate: AngularRate::zero(),
+            step: 0,
             started: false,
             refused: 0,
         }
@@ -106,31 +110,69 @@ impl<T: RealField + Copy> Fusion<T> {
             self.inclination.level(sample.force);
             self.started = true;
         }
-        if self.rest.update(rate, force, self.bias.at_rest()) {
-            match self.motion() {
-                Motion::Still { samples } if samples <= DECIMATION => {
-                    let (rate, blocks) = self.rest.calm_rate();
-                    self.bias.begins_to_rest(rate, blocks);
-                }
-                Motion::Still { .. } => self.bias.rests(self.rest.block_rate()),
-                Motion::Moving { .. } => self.bias.moves(),
-            }
-        }
         self.rate = AngularRate::from_rad_per_s(rate - self.bias.rad_per_s());
         self.inclination.update(self.rate, sample.force);
-        let heading_error = field
-            .map(MagneticField::microtesla)
-            .filter(|&field| within(field, 100_000.0))
-            .and_then(|field| {
-                let turning = self.rate.rad_per_s();
-                self.heading
-                    .update(self.inclination.in_world(field), turning)
-            });
-        let error = self
-            .integral
-            .update(&self.inclination, heading_error, self.bias.source());
-        if let (Motion::Moving { .. }, Some(error)) = (self.motion(), error) {
-            self.bias.shift(error);
+        self.rest.add(rate, force);
+        if let Some(field) = field.map(MagneticField::microtesla)
+            && within(field, 100_000.0)
+        {
+            self.update_heading(field);
+        }
+        self.step = (self.step + 1) % DECIMATION;
+        match self.step {
+            0 => self.rest.look_at_rate(self.bias.at_rest()),
+            1 if self.rest.has_looked() => self.look_at_force(),
+            2 => self.rest.settle(),
+            3 if self.is_still() => self.follow_rest(),
+            4 => self.integral.follow(&self.inclination),
+            5 if !self.is_still() => self.follow_tilt(),
+            _ => {}
+        }
+    }
+
+    /// With the force there is a verdict on the last block.
+    fn look_at_force(&mut self) {
+        self.rest.look_at_force();
+        if let Motion::Moving { .. } = self.rest.judge() {
+            self.bias.moves();
+        }
+    }
+
+    /// One field, µT, body frame.
+    fn update_heading(&mut self, field: Vector3<T>) {
+        let field = self.inclination.in_world(field);
+        let Some(error) = self.heading.update(field, self.rate.rad_per_s()) else {
+            return;
+        };
+        let source = self.bias.source();
+        if let Some(shift) = self.integral.of_heading(&self.inclination, error, source)
+            && !self.is_still()
+        {
+            self.bias.shift(shift);
+        }
+    }
+
+    /// What a rest means for the bias.
+    fn follow_rest(&mut self) {
+        if self.rest.begins() {
+            let (rate, blocks) = self.rest.calm_rate();
+            self.bias.begins_to_rest(rate, blocks);
+        } else {
+            self.bias.rests(self.rest.block_rate());
+        }
+    }
+
+    fn is_still(&self) -> bool {
+        matches!(self.motion(), Motion::Still { .. })
+    }
+
+    /// What the tilt's error means for it; at rest the mean knows better.
+    fn follow_tilt(&mut self) {
+        let (error, source) = (self.inclination.error(), self.bias.source());
+        if self.inclination.is_settled()
+            && let Some(shift) = self.integral.of_tilt(error, source)
+        {
+            self.bias.shift(shift);
         }
     }
 
@@ -167,6 +209,7 @@ impl<T: RealField + Copy> Fusion<T> {
     pub fn level(&mut self, force: SpecificForce<T>) {
         self.inclination.level(force);
         self.rest.restart();
+        self.step = 0;
     }
 
     /// Takes this rate (body frame) for the gyro's bias, as one measured at rest. False, and nothing
@@ -194,7 +237,7 @@ impl<T: RealField + Copy> Fusion<T> {
     /// At rest: how fast the orientation still turns, that is the heading's drift, in the body's axes.
     /// None on the move, when nobody can tell.
     pub fn residual(&self) -> Option<AngularRate<T>> {
-        matches!(self.motion(), Motion::Still { .. })
+        self.is_still()
             .then(|| AngularRate::from_rad_per_s(self.rest.mean_rate() - self.bias.rad_per_s()))
     }
 

@@ -87,6 +87,10 @@ pub struct Board {
     /// Where the image's variables end: below this the stack must not grow.
     stack_limit: u32,
     latencies: Latencies,
+    /// The same to the moment at which the host begins to take the packet.
+    taken: Latencies,
+    /// When the sample was ready that the packet at its endpoint holds.
+    armed: Option<Ticks>,
     /// Where the USB controller looks for its buffer descriptors.
     usb_table: u32,
     profile: Option<Profile>,
@@ -137,6 +141,8 @@ impl Board {
             watch: Watch::default(),
             stack_limit,
             latencies: Latencies::default(),
+            taken: Latencies::default(),
+            armed: None,
             usb_table: 0,
             profile: None,
             began: (0, Cycles::default(), 0),
@@ -243,6 +249,7 @@ impl Board {
             && let Some(ready) = chip.sensor.take_fetched()
         {
             self.latencies.push(self.now - ready);
+            self.armed = Some(ready);
         }
     }
 
@@ -273,6 +280,11 @@ impl Board {
         let shared = Arc::clone(&self.shared);
         let mut chip = shared.chip();
         chip.advance();
+        if chip.usb.take_gone()
+            && let Some(ready) = self.armed.take()
+        {
+            self.taken.push(self.now - ready);
+        }
         if !chip.witness.is_empty() {
             let offences = chip.witness.take();
             drop(chip);

@@ -3,24 +3,20 @@
 //! What it computes is [`orientation::complementary`](crate::orientation::complementary), which is the one to read
 //! first; here every step is put the way that costs least.
 
+use super::gyro::{Remainders, half_angle_per_count};
 use super::half_angle::{length_squared, tangent_excess};
-use super::inclination::{NearLevel, Share, anywhere};
+use super::inclination::{NearLevel, Share, levelled};
 use super::multiply::{Multiply, Portable};
-use super::number::{Q, Wide};
+use super::number::Q;
 use super::quaternion::Quaternion;
 use super::vector::Vector;
 use crate::calibration::GyroBias;
 use crate::orientation::TimeConstant;
 use crate::sensor::{GyroRange, RawSample};
-use crate::units::{RADIANS_PER_DEGREE, Seconds};
-use nalgebra::UnitQuaternion;
+use crate::units::Seconds;
 
-/// The time from one sample to the next in nanoseconds.
-///
-/// Single precision would keep seven digits of it, and a gyro that turned by 6000° would be off by a
-/// thousandth of a degree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Nanoseconds(pub u32);
+pub use super::gyro::Nanoseconds;
+pub use super::measurement::Force;
 
 /// What a person chooses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +48,7 @@ impl Bias {
 
     /// From physical units, at the range the gyro was set to. Zero for what is not a number.
     pub fn new(bias: GyroBias<f32>, gyro: GyroRange) -> Self {
-        let per_dps = (f64::from(1 << 30) / gyro.max_dps()) as f32;
+        let per_dps = gyro.counts_per_dps() * 32768.0;
         let dps: [f32; 3] = bias.rate().dps().into();
         // A cast saturates.
         Self::from_parts_of_counts(dps.map(|dps| (dps * per_dps) as i32))
@@ -69,49 +65,26 @@ struct Derived<M> {
 }
 
 impl<M: Multiply> Derived<M> {
-    /// A sixteenth less than what fits, for what a tangent is longer than its angle.
-    const LONGEST: u64 = 15 << 27;
-
     fn new(parameters: &Parameters) -> Self {
         let Parameters {
             gyro,
-            sample_period: Nanoseconds(nanoseconds),
+            sample_period,
             time_constant,
         } = *parameters;
-        let per_nanosecond = half_angle_per_nanosecond(gyro);
-        let half_angle = (per_nanosecond * u64::from(nanoseconds) + (1 << 22)) >> 23;
-        let share = Share::from_accelerometer_weight(
-            time_constant.accelerometer_weight(Seconds(nanoseconds as f32 * 1e-9)),
-        );
+        let seconds = Seconds(sample_period.0 as f32 * 1e-9);
+        let share = Share::from_accelerometer_weight(time_constant.accelerometer_weight(seconds));
         Self {
-            half_angle_per_count: Q::from_bits(half_angle.min(Self::LONGEST) as i32),
+            half_angle_per_count: half_angle_per_count(gyro, sample_period),
             near_level: NearLevel::new(share),
             share,
         }
     }
 }
 
-/// Half a radian per second and count, as Q72 per nanosecond: ½ max_range / 2¹⁵ 10⁻⁹ 2⁷².
-const fn half_angle_per_nanosecond(gyro: GyroRange) -> u64 {
-    const PER_DPS: f64 = 0.5 * RADIANS_PER_DEGREE * 1e-9 * (1_u64 << 57) as f64;
-    const fn of(dps: f64) -> u64 {
-        (dps * PER_DPS + 0.5) as u64
-    }
-    match gyro {
-        GyroRange::Dps250 => const { of(GyroRange::Dps250.max_dps()) },
-        GyroRange::Dps500 => const { of(GyroRange::Dps500.max_dps()) },
-        GyroRange::Dps1000 => const { of(GyroRange::Dps1000.max_dps()) },
-        GyroRange::Dps2000 => const { of(GyroRange::Dps2000.max_dps()) },
-    }
-}
-
-/// Half of the last bit kept.
-const ROUNDING: u32 = 1 << 31;
-
 /// The complementary filter on quaternions, eq. 24, in integers.
 ///
 /// ```
-/// use vrduino::fixed::complementary::{Complementary, Nanoseconds, Parameters};
+/// use vrduino::fixed::complementary::{Complementary, Force, Nanoseconds, Parameters};
 /// use vrduino::orientation::DEFAULT_TIME_CONSTANT;
 /// use vrduino::sensor::{GyroRange, RawSample};
 ///
@@ -122,7 +95,7 @@ const ROUNDING: u32 = 1 << 31;
 /// });
 /// // A second of 90 °/s about the vertical, which is what 1475 counts come to.
 /// let sample = RawSample { gyro: [0, 1475, 0], accel: [0, 16384, 0], temperature: 0, fresh: true };
-/// filter.reset(sample.accel);
+/// filter.reset(Force::from_counts(sample.accel));
 /// for _ in 0..1000 {
 ///     filter.update(&sample);
 /// }
@@ -131,10 +104,10 @@ const ROUNDING: u32 = 1 << 31;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Complementary<M = Portable> {
+    gyro: GyroRange,
     derived: Derived<M>,
     bias: Bias,
-    /// What the half angles of the samples so far have left below the last bit of theirs, as Q64.
-    remainders: [u32; 3],
+    remainders: Remainders,
     orientation: Quaternion<M>,
 }
 
@@ -149,16 +122,24 @@ impl<M: Multiply> Complementary<M> {
     /// Starts from the identity and without a bias; products are taken by `M`.
     pub fn with(parameters: &Parameters) -> Self {
         Self {
+            gyro: parameters.gyro,
             derived: Derived::new(parameters),
             bias: Bias::ZERO,
-            remainders: [ROUNDING; 3],
+            remainders: Remainders::START,
             orientation: Quaternion::IDENTITY,
         }
     }
 
     /// Goes on with other parameters.
     pub fn tune(&mut self, parameters: &Parameters) {
+        self.gyro = parameters.gyro;
         self.derived = Derived::new(parameters);
+    }
+
+    /// The time between two samples as it was measured, which is what the gyro turns for. The accelerometer's share
+    /// stays that of the nominal one.
+    pub fn set_sample_period(&mut self, period: Nanoseconds) {
+        self.derived.half_angle_per_count = half_angle_per_count(self.gyro, period);
     }
 
     /// What is taken off the gyro from now on.
@@ -172,9 +153,15 @@ impl<M: Multiply> Complementary<M> {
     /// A force of zero counts corrects nothing.
     #[inline(always)]
     pub fn update(&mut self, sample: &RawSample) {
-        let (tangent, h_squared) = self.half_angle(sample.gyro);
+        self.update_corrected(sample.gyro, Force::from_counts(sample.accel));
+    }
+
+    /// The same with the accelerometer corrected.
+    #[inline(always)]
+    pub fn update_corrected(&mut self, gyro: [i16; 3], force: Force) {
+        let (tangent, h_squared) = self.half_angle(gyro);
         let q_omega = self.orientation.turned_in_body(tangent);
-        let force = q_omega.in_world(sample.accel, length_squared(h_squared));
+        let force = q_omega.in_world_times_square(force.vector(), length_squared(h_squared));
         let Some((x, z)) = self.derived.near_level.little(force) else {
             self.orientation = q_omega;
             return self.level_anywhere(force.x, force.y, force.z);
@@ -192,22 +179,7 @@ impl<M: Multiply> Complementary<M> {
     #[cold]
     #[inline(never)]
     fn level_anywhere(&mut self, x: Q<M, 11>, y: Q<M, 11>, z: Q<M, 11>) {
-        self.level_by(self.derived.share, Vector::new(x, y, z));
-    }
-
-    /// By a share of any tilt.
-    #[inline]
-    fn level_by(&mut self, share: Share, force: Vector<M, 11>) {
-        let q = self.orientation;
-        self.orientation = match (anywhere(force), share) {
-            (None, _) => q,
-            (Some(tilt), Share::Little(share)) => {
-                let (x, z) = tilt.little(Q::from_bits(share));
-                q.levelled_a_little(x, z)
-            }
-            (Some(tilt), Share::Much(share)) => q.levelled(tilt.much(share)),
-        };
-        self.normalise();
+        self.orientation = levelled(self.orientation, Vector::new(x, y, z), self.derived.share);
     }
 
     /// To unit length, also after a turn by many degrees.
@@ -229,14 +201,7 @@ impl<M: Multiply> Complementary<M> {
         let h: Vector<M, 32> = rate.times(per_count);
         let h_squared = h.norm_squared();
         let tangent_per_count = per_count.plus(per_count, tangent_excess(h_squared));
-        let [rest_x, rest_y, rest_z] = &mut self.remainders;
-        let of = |rate: Q<M, 15>, rest: &mut u32| {
-            let rest_and = Wide::<M, 64>::from_bits(i64::from(*rest));
-            let tangent = rest_and.plus(rate, tangent_per_count);
-            *rest = tangent.lower();
-            tangent.upper()
-        };
-        let tangent = Vector::new(of(rate.x, rest_x), of(rate.y, rest_y), of(rate.z, rest_z));
+        let tangent = self.remainders.half_angle(rate, tangent_per_count);
         (tangent, h_squared)
     }
 
@@ -250,27 +215,28 @@ impl<M: Multiply> Complementary<M> {
         self.orientation.upper().map(Q::bits)
     }
 
-    /// Goes on from this orientation, body to world. One that is not a number, or no unit quaternion, changes nothing.
-    pub fn set(&mut self, orientation: &UnitQuaternion<f32>) {
-        let q = orientation.quaternion();
-        if (q.norm_squared() - 1.0).abs() < 0.1 {
-            let of = |part: f32| Q::from_bits((part * (1 << 30) as f32) as i32);
-            self.orientation = Quaternion::from_upper([of(q.w), of(q.i), of(q.j), of(q.k)]);
-            self.normalise();
-        }
+    /// Goes on from this orientation, body to world, in units of 2⁻³⁰. False, and nothing changes, if its length is not
+    /// from ½ to 2.
+    pub fn set(&mut self, orientation: [i32; 4]) -> bool {
+        let q = Quaternion::from_upper(orientation.map(Q::from_bits));
+        let Some(q) = q.normalised_anywhere() else {
+            return false;
+        };
+        self.orientation = q;
+        true
     }
 
-    /// Starts again with no turn about the vertical and the tilt this force (counts, body frame) shows
-    /// (section 5.2); from the identity if it shows none.
-    pub fn reset(&mut self, accel: [i16; 3]) {
+    /// Starts again with no turn about the vertical and the tilt this force (body frame) shows (section 5.2); from the
+    /// identity if it shows none.
+    pub fn reset(&mut self, force: Force) {
         self.orientation = Quaternion::IDENTITY;
-        self.level(accel);
+        self.level(force);
     }
 
-    /// Takes the tilt this force (counts, body frame) shows at once and keeps yaw. One without direction changes
-    /// nothing.
-    pub fn level(&mut self, accel: [i16; 3]) {
-        let force = self.orientation.in_world(accel, const { Q::constant(1.0) });
-        self.level_by(Share::WHOLE, force);
+    /// Takes the tilt this force (body frame) shows at once and keeps yaw. One without direction changes nothing.
+    pub fn level(&mut self, force: Force) {
+        let one = const { Q::constant(1.0) };
+        let force = self.orientation.in_world_times_square(force.vector(), one);
+        self.orientation = levelled(self.orientation, force, Share::WHOLE);
     }
 }

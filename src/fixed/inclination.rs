@@ -8,7 +8,7 @@ use super::division::{reciprocal, reciprocal_from_below, reciprocal_root};
 use super::half_angle::tangent_excess;
 use super::multiply::Multiply;
 use super::number::Q;
-use super::quaternion::Levelling;
+use super::quaternion::{Levelling, Quaternion};
 use super::vector::Vector;
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -108,7 +108,7 @@ pub struct Tilt<M> {
 /// Any tilt; none if the force is zero, which has no direction. One that points straight down
 /// is turned up about x, as the notes leave open.
 #[inline]
-pub fn anywhere<M: Multiply>(force: Vector<M, 11>) -> Option<Tilt<M>> {
+pub fn anywhere<M: Multiply, const BITS: u32>(force: Vector<M, BITS>) -> Option<Tilt<M>> {
     let Vector { x, y: up, z } = force;
     let largest = x.bits().unsigned_abs() | up.bits().unsigned_abs() | z.bits().unsigned_abs();
     if largest == 0 {
@@ -116,7 +116,7 @@ pub fn anywhere<M: Multiply>(force: Vector<M, 11>) -> Option<Tilt<M>> {
     }
     // The largest becomes ½ to 1.
     let shift = largest.leading_zeros().saturating_sub(2);
-    let scaled = |q: Q<M, 11>| Q::<M, 30>::from_bits(q.bits() << shift);
+    let scaled = |q: Q<M, BITS>| Q::<M, 30>::from_bits(q.bits() << shift);
     let (x, up, z) = (scaled(x), scaled(up), scaled(z));
     let Some((x, z, horizontal)) = horizontal(x, z) else {
         let straight_down = Tilt {
@@ -161,30 +161,51 @@ impl<M: Multiply> Tilt<M> {
     }
 }
 
-/// (x, z) / √(x² + z²), and the root; none if both are zero.
+/// The orientation levelled by a share of any tilt, which the force in the world shows, and normalised.
 #[inline]
-fn horizontal<M: Multiply>(x: Q<M, 30>, z: Q<M, 30>) -> Option<(Q<M, 30>, Q<M, 30>, Q<M, 30>)> {
-    let largest = x.bits().unsigned_abs() | z.bits().unsigned_abs();
-    if largest == 0 {
+pub fn levelled<M: Multiply, const BITS: u32>(
+    q: Quaternion<M>,
+    force: Vector<M, BITS>,
+    share: Share,
+) -> Quaternion<M> {
+    let levelled = match (anywhere(force), share) {
+        (None, _) => q,
+        (Some(tilt), Share::Little(share)) => {
+            let (x, z) = tilt.little(Q::from_bits(share));
+            q.levelled_a_little(x, z)
+        }
+        (Some(tilt), Share::Much(share)) => q.levelled(tilt.much(share)),
+    };
+    levelled.normalised()
+}
+
+/// (x, z) / √(x² + z²), and the root, for x and z up to ½; none if both are zero.
+#[inline(always)]
+pub fn horizontal<M: Multiply>(x: Q<M, 30>, z: Q<M, 30>) -> Option<(Q<M, 30>, Q<M, 30>, Q<M, 30>)> {
+    let (x, z) = (x.bits(), z.bits());
+    if x | z == 0 {
         return None;
     }
+    // As many zeros as the larger has: inverting what is negative makes it shorter by one at most.
+    let largest = (x ^ (x >> 31)) | (z ^ (z >> 31));
     // The larger becomes ½ to 1 of its own: beside a large vertical part both may be small.
     let shift = largest.leading_zeros().saturating_sub(2);
-    let (x, z) = (x.bits() << shift, z.bits() << shift);
-    let square = i64::from(x) * i64::from(x) + i64::from(z) * i64::from(z);
+    let (x, z) = (x << shift, z << shift);
+    let square = M::add_wide(M::add_wide(0, x, x), z, z);
     // From ¼ to below 1, by halving both if need be.
-    let halved = u32::from(square >= 1 << 60);
-    let (x, z) = (
-        Q::<M, 30>::from_bits(x >> halved),
-        Q::<M, 30>::from_bits(z >> halved),
-    );
-    let square = Q::<M, 31>::from_bits((square >> (29 + 2 * halved)) as i32);
+    let (x, z, square, halved) = if square >= 1 << 60 {
+        (x >> 1, z >> 1, square >> 31, 1)
+    } else {
+        (x, z, square >> 29, 0)
+    };
+    let square = Q::<M, 31>::from_bits(square as i32);
     let per_root = reciprocal_root(square);
     let root: Q<M, 30> = Q::<M, 28>::product(square, per_root).finer();
+    let unit = |part: i32| Q::<M, 27>::product(Q::<M, 30>::from_bits(part), per_root).finer();
     Some((
-        Q::<M, 27>::product(x, per_root).finer(),
-        Q::<M, 27>::product(z, per_root).finer(),
-        Q::from_bits(((i64::from(root.bits()) << halved) >> shift) as i32),
+        unit(x),
+        unit(z),
+        Q::from_bits((root.bits() << halved) >> shift),
     ))
 }
 

@@ -7,7 +7,7 @@
 ///
 /// A trait, because a compiler does not always find the instructions by itself, and this library writes
 /// no assembly language. Both forms give the same bits for any input.
-pub trait Multiply: Copy {
+pub trait Multiply: Copy + Eq {
     /// round(a b / 2³²).
     #[inline(always)]
     fn high(a: i32, b: i32) -> i32 {

@@ -58,6 +58,19 @@ impl<M: Multiply, const BITS: u32> Q<M, BITS> {
         Self::from_bits((scaled + away) as i32)
     }
 
+    /// The nearest to `value`; the end of the range for what is outside, zero for what is not a number.
+    /// For what follows from parameters: it computes in floating point.
+    pub fn nearest(value: f32) -> Self {
+        // A cast cuts off towards zero, saturates, and makes zero of what is not a number.
+        let away = if value < 0.0 { -0.5 } else { 0.5 };
+        Self::from_bits((value * (1_u64 << BITS) as f32 + away) as i32)
+    }
+
+    /// In floating point.
+    pub fn to_f32(self) -> f32 {
+        self.bits as f32 / (1_u64 << BITS) as f32
+    }
+
     /// a b.
     #[inline(always)]
     pub fn product<const A: u32, const B: u32>(a: Q<M, A>, b: Q<M, B>) -> Self {
@@ -91,6 +104,33 @@ impl<M: Multiply, const BITS: u32> Q<M, BITS> {
     pub fn twice<const LESS: u32>(self) -> Q<M, LESS> {
         const { assert!(LESS + 1 == BITS, "twice as much is one fraction bit less") }
         Q::from_bits(self.bits)
+    }
+
+    /// The same value in a coarser format, rounded down.
+    #[inline(always)]
+    pub fn coarser<const COARSER: u32>(self) -> Q<M, COARSER> {
+        const { assert!(COARSER <= BITS, "a coarser format has fewer bits") }
+        Q::from_bits(self.bits >> (BITS - COARSER))
+    }
+
+    /// The same bits, read with other fraction bits: the value times a power of two.
+    #[inline(always)]
+    pub fn read_as<const OTHER: u32>(self) -> Q<M, OTHER> {
+        Q::from_bits(self.bits)
+    }
+
+    /// The nearest from −`limit` to `limit`, which is not negative.
+    #[inline(always)]
+    pub fn limited(self, limit: Self) -> Self {
+        // Not `clamp`, which panics where the ends are not in order.
+        Self::from_bits(self.bits.min(limit.bits).max(-limit.bits))
+    }
+
+    /// Whether it is not beyond −`limit` and `limit`, which is not negative.
+    #[inline(always)]
+    pub fn is_within(self, limit: Self) -> bool {
+        // Moved up by the limit, what is within is no larger than twice that, and what is not wraps around.
+        self.bits.wrapping_add(limit.bits) as u32 <= (limit.bits as u32).wrapping_mul(2)
     }
 
     /// The exact product, with the fraction bits of both.
@@ -148,6 +188,21 @@ impl<M: Multiply, const BITS: u32> Wide<M, BITS> {
     #[inline(always)]
     pub const fn bits(self) -> i64 {
         self.bits
+    }
+
+    /// From the upper half, and half of its last bit: what is added from then on is rounded to nearest by
+    /// rounding down.
+    #[inline(always)]
+    pub fn from_upper<const UPPER: u32>(upper: Q<M, UPPER>) -> Self {
+        const { assert!(UPPER + 32 == BITS, "the upper half has 32 bits less") }
+        Self::from_bits(i64::from(upper.bits) << 32 | 1 << 31)
+    }
+
+    /// By this share of the way to `target`: one step of a low-pass of first order, that nothing is rounded
+    /// off but what lies below the last bit of the target.
+    #[inline(always)]
+    pub fn towards<const UPPER: u32>(self, target: Q<M, UPPER>, share: Q<M, 32>) -> Self {
+        self.plus(target - self.upper(), share)
     }
 
     /// The upper half, rounded down.

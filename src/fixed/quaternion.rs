@@ -3,6 +3,8 @@
 //! The lower half is what a sample adds beyond them. Rounding it off would be off by as much again and again
 //! wherever the same few counts come again and again: a sensor at rest.
 
+use super::arc::{cosine, sine_per_angle};
+use super::division::{reciprocal_length, shortening};
 use super::multiply::Multiply;
 use super::number::{Q, Wide};
 use super::vector::Vector;
@@ -42,8 +44,8 @@ impl<M: Multiply> Quaternion<M> {
 
     /// From w, x, y and z.
     #[inline]
-    pub fn from_upper(upper: [Q<M, 30>; 4]) -> Self {
-        let [w, x, y, z] = upper.map(|q| Wide::from_bits(i64::from(q.bits()) << 32));
+    pub fn from_upper(parts: [Q<M, 30>; 4]) -> Self {
+        let [w, x, y, z] = parts.map(Wide::from_upper);
         Self { w, x, y, z }
     }
 
@@ -67,6 +69,19 @@ impl<M: Multiply> Quaternion<M> {
             y: self.y.plus(w, t.y).plus(z, t.x).plus(x, -t.z),
             x: self.x.plus(w, t.x).plus(y, t.z).plus(z, -t.y),
             w: self.w.plus(x, -t.x).plus(y, -t.y).plus(z, -t.z),
+        }
+    }
+
+    /// q (1 + c, s): a turn in the body's own axes by twice the angle of which s is the sine and 1 + c the cosine.
+    #[inline(always)]
+    pub fn rotated_in_body(self, c: Q<M, 32>, s: Vector<M, 32>) -> Self {
+        let [w, x, y, z] = self.upper();
+        let turned = self.turned_in_body(s);
+        Self {
+            w: turned.w.plus(w, c),
+            x: turned.x.plus(x, c),
+            y: turned.y.plus(y, c),
+            z: turned.z.plus(z, c),
         }
     }
 
@@ -102,14 +117,14 @@ impl<M: Multiply> Quaternion<M> {
         }
     }
 
-    /// q a q⁻¹ |q|²: a vector of the body as seen from the world. Counts and |q|² in; counts with 11 fraction
-    /// bits out.
+    /// q a q⁻¹ |q|²: a vector of the body as seen from the world. 15 fraction bits and |q|² in, 11
+    /// out. Half of what 32 bits hold goes in.
     ///
     /// |q|² a + 2 v × (v × a + w a) with the vector part v: what is in the brackets is no longer than a.
     #[inline(always)]
-    pub fn in_world(self, counts: [i16; 3], norm_squared: Q<M, 27>) -> Vector<M, 11> {
+    pub fn in_world_times_square(self, a: Vector<M, 15>, norm_squared: Q<M, 27>) -> Vector<M, 11> {
         let [w, x, y, z] = self.upper();
-        let a: Vector<M, 16> = Vector::from_counts(counts);
+        let a: Vector<M, 16> = a.finer();
         let inner: Vector<M, 14> = Vector {
             x: Q::product(w, a.x).plus(y, a.z).minus(z, a.y),
             y: Q::product(w, a.y).plus(z, a.x).minus(x, a.z),
@@ -122,6 +137,61 @@ impl<M: Multiply> Quaternion<M> {
             z: outer.z.plus(x, inner.y).minus(y, inner.x),
             y: outer.y.plus(z, inner.x).minus(x, inner.z),
         }
+    }
+
+    /// q a q⁻¹: a vector of the body as seen from the world. 15 fraction bits in, 12 out.
+    #[inline(always)]
+    pub fn in_world(self, a: Vector<M, 15>) -> Vector<M, 12> {
+        let [w, x, y, z] = self.upper();
+        let inner: Vector<M, 15> = Vector::<M, 13>::new(
+            Q::product(w, a.x).plus(y, a.z).minus(z, a.y),
+            Q::product(w, a.y).plus(z, a.x).minus(x, a.z),
+            Q::product(w, a.z).plus(x, a.y).minus(y, a.x),
+        )
+        .finer();
+        let outer: Vector<M, 12> = a.coarser();
+        let (x, y, z): (Q<M, 29>, Q<M, 29>, Q<M, 29>) = (x.twice(), y.twice(), z.twice());
+        Vector {
+            x: outer.x.plus(y, inner.z).minus(z, inner.y),
+            y: outer.y.plus(z, inner.x).minus(x, inner.z),
+            z: outer.z.plus(x, inner.y).minus(y, inner.x),
+        }
+    }
+
+    /// The world's x as the body sees it: the first row of the rotation matrix.
+    #[inline(always)]
+    pub fn world_x(self) -> Vector<M, 27> {
+        let [w, x, y, z] = self.upper();
+        Vector::<M, 28>::new(
+            const { Q::constant(0.5) }.minus(y, y).minus(z, z),
+            Q::product(x, y).minus(w, z),
+            Q::product(x, z).plus(w, y),
+        )
+        .read_as()
+    }
+
+    /// The world's y, the vertical, as the body sees it: the second.
+    #[inline(always)]
+    pub fn world_y(self) -> Vector<M, 27> {
+        let [w, x, y, z] = self.upper();
+        Vector::<M, 28>::new(
+            Q::product(x, y).plus(w, z),
+            const { Q::constant(0.5) }.minus(x, x).minus(z, z),
+            Q::product(y, z).minus(w, x),
+        )
+        .read_as()
+    }
+
+    /// The world's z as the body sees it: the third.
+    #[inline(always)]
+    pub fn world_z(self) -> Vector<M, 27> {
+        let [w, x, y, z] = self.upper();
+        Vector::<M, 28>::new(
+            Q::product(x, z).minus(w, y),
+            Q::product(y, z).plus(w, x),
+            const { Q::constant(0.5) }.minus(x, x).minus(y, y),
+        )
+        .read_as()
     }
 
     /// |q|² − 1.
@@ -156,13 +226,25 @@ impl<M: Multiply> Quaternion<M> {
         nearly.shortened(nearly.excess().finer())
     }
 
-    /// q (1 + e)^−½ = q (1 − e/2 + 3e²/8 − 5e³/16 + …); leaves 35e⁴/128, 1e-9 for e = 1/128.
+    /// The same for |q|² from ¼ to below 4; none for any other.
+    #[inline]
+    pub fn normalised_anywhere(self) -> Option<Self> {
+        let length = reciprocal_length(self.excess())?;
+        let [w, x, y, z] = self.upper();
+        // Q30 times Q29, as Q62.
+        let whole = |q: Q<M, 30>| Wide::from_bits(q.wide(length) << 3);
+        Some(Self {
+            w: whole(w),
+            x: whole(x),
+            y: whole(y),
+            z: whole(z),
+        })
+    }
+
+    /// q (1 + e)^−½.
     #[inline(always)]
     fn shortened(self, e: Q<M, 33>) -> Self {
-        let inner = const { Q::<M, 30>::constant(3.0 / 8.0) }
-            .minus(e, const { Q::<M, 29>::constant(5.0 / 16.0) });
-        let series = const { Q::<M, 31>::constant(-0.5) }.plus(e, inner);
-        self.grown(Q::product(e, series))
+        self.grown(shortening(e))
     }
 
     /// This and as much more of itself as `share` says.
@@ -176,4 +258,31 @@ impl<M: Multiply> Quaternion<M> {
             z: self.z.plus(z, share),
         }
     }
+}
+
+/// The product of two quaternions.
+pub fn product<M: Multiply>(a: [Q<M, 30>; 4], b: [Q<M, 30>; 4]) -> [Q<M, 30>; 4] {
+    let ([w, x, y, z], [d, e, f, g]) = (a, b);
+    // The sum of four Q60, rounded to Q30.
+    let rounded = |q60: i64| Q::from_bits(((q60 + (1 << 29)) >> 30) as i32);
+    [
+        rounded(w.wide(d) - x.wide(e) - y.wide(f) - z.wide(g)),
+        rounded(w.wide(e) + x.wide(d) + y.wide(g) - z.wide(f)),
+        rounded(w.wide(f) - x.wide(g) + y.wide(d) + z.wide(e)),
+        rounded(w.wide(g) + x.wide(f) - y.wide(e) + z.wide(d)),
+    ]
+}
+
+/// The turn at this rate, in counts, by so much of half an angle per count; of any size.
+pub fn step<M: Multiply>(rate: Vector<M, 15>, half_angle_per_count: Q<M, 45>) -> [Q<M, 30>; 4] {
+    let half = |rate| Q::<M, 28>::product(rate, half_angle_per_count);
+    // A quarter of it, for which the series are good, taken four times.
+    let quarter = |rate| half(rate).read_as::<30>();
+    let (x, y, z) = (quarter(rate.x), quarter(rate.y), quarter(rate.z));
+    let squared: Q<M, 29> = Q::<M, 28>::product(x, x).plus(y, y).plus(z, z).finer();
+    let sine = sine_per_angle(squared);
+    let along = |part| Q::<M, 28>::product(part, sine).finer::<30>();
+    let first = [cosine(squared), along(x), along(y), along(z)];
+    let twice = product(first, first);
+    product(twice, twice)
 }

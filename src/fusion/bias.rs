@@ -43,11 +43,11 @@ struct Coefficients<T> {
 }
 
 /// A long rest follows the temperature: the mean goes back so far, s.
-const MEMORY: f64 = 5.0;
+pub const MEMORY: f64 = 5.0;
 /// What was known before a rest counts like so much of it, s.
-const WEIGHT: f64 = 1.0;
+pub const WEIGHT: f64 = 1.0;
 /// A rest ends so long before it is seen to, s: once or twice this is taken back.
-const MARK: f64 = 0.25;
+pub const MARK: f64 = 0.25;
 
 impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, rates: Rates<T>) -> Self {

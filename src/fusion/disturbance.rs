@@ -45,7 +45,7 @@ struct Coefficients<T> {
 }
 
 /// How quickly the candidate follows the field that does not fit, s.
-const CANDIDATE_TIME: f64 = 5.0;
+pub const CANDIDATE_TIME: f64 = 5.0;
 
 impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {

@@ -23,9 +23,9 @@ pub struct Heading<T: RealField> {
 }
 
 /// From this rate on the sensor turns, °/s.
-const TURNING_DPS: f64 = 20.0;
+pub const TURNING_DPS: f64 = 20.0;
 /// With a new reference the heading goes on as if it had followed it for so long, s.
-const RENEWED: f64 = 1.0;
+pub const RENEWED: f64 = 1.0;
 
 impl<T: RealField + Copy> Heading<T> {
     pub fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
@@ -81,16 +81,16 @@ impl<T: RealField + Copy> Heading<T> {
         Some(error)
     }
 
-    /// Turns on by twice this half angle, which is half a radian at most: series good to 1e-7.
-    fn turn_by(&mut self, half: T) {
+    /// (1, t) after it, as in [`Inclination`](super::inclination::Inclination): a turn by 2 arctan t.
+    fn turn_by(&mut self, t: T) {
         let [c, s] = self.half;
-        let d = |denominator: f64| -> T { convert(1.0 / denominator) };
-        let h = half * half;
-        let sin = half * (T::one() - h * (d(6.0) - h * (d(120.0) - h * d(5040.0))));
-        let cos = T::one() - h * (d(2.0) - h * (d(24.0) - h * (d(720.0) - h * d(40320.0))));
-        let turned = [c * cos - s * sin, s * cos + c * sin];
+        let turned = [c - s * t, s + c * t];
         let squared = turned[0] * turned[0] + turned[1] * turned[1];
-        let scale = (convert::<f64, T>(3.0) - squared) * convert(0.5);
+        let scale = if (squared - T::one()).abs() > convert(1e-3) {
+            T::one() / squared.sqrt()
+        } else {
+            (convert::<f64, T>(3.0) - squared) * convert(0.5)
+        };
         self.half = turned.map(|part| part * scale);
     }
 

@@ -1,6 +1,6 @@
 //! Tilt without drift from gyro and accelerometer; the heading is the gyro's.
 
-use super::parameters::{Parameters, samples, share, size, tilt_low_pass_weight, weight};
+use super::parameters::{Parameters, samples, share, size, tilt_correction, tilt_low_pass_weight};
 use crate::orientation::quaternion::trued;
 use crate::orientation::{gyro, tilt};
 use crate::units::{AngularRate, METRES_PER_S2_PER_G, Seconds, SpecificForce};
@@ -23,21 +23,18 @@ struct Coefficients<T> {
     half_period: T,
     /// k_l = 1 − exp(−2ζω₀Δt): the low-pass of the error.
     low_pass: T,
-    /// k_c = ω₀Δt/2ζ: the share of it that is corrected in a sample.
+    /// k_c: the share of it that is corrected in a sample.
     correction: T,
     per_g: T,
     start: u32,
 }
 
 impl<T: RealField + Copy> Coefficients<T> {
-    /// ω₀ = √2/τ.
     fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
-        let natural = convert::<f64, T>(core::f64::consts::SQRT_2) / parameters.tilt_time.0;
-        let twice_damping = parameters.damping * convert(2.0);
         Self {
             half_period: size(period.0) * convert(0.5),
             low_pass: tilt_low_pass_weight(parameters, period),
-            correction: weight(natural * period.0 / twice_damping),
+            correction: tilt_correction(parameters, period),
             per_g: convert(1.0 / METRES_PER_S2_PER_G),
             start: samples(parameters.start_time, period),
         }

@@ -97,15 +97,15 @@ impl<T: RealField + Copy> Default for Parameters<T> {
 }
 
 /// 1 − e^(−Δt/τ), the share of a new sample in a low-pass of first order; from 0 to 1 for any times.
-pub(super) fn low_pass_weight<T: RealField + Copy>(time: Seconds<T>, period: Seconds<T>) -> T {
+pub(crate) fn low_pass_weight<T: RealField + Copy>(time: Seconds<T>, period: Seconds<T>) -> T {
     weight(-(-period.0 / time.0).exp_m1())
 }
 
 /// Samples per look at what changes slowly: rest, and what the tilt's error says of the bias.
-pub(super) const DECIMATION: u32 = 8;
+pub(crate) const DECIMATION: u32 = 8;
 
 /// The share of the newest in the low-pass of the tilt's error, 1 − exp(−2ζω₀Δt) with ω₀ = √2/τ.
-pub(super) fn tilt_low_pass_weight<T: RealField + Copy>(
+pub(crate) fn tilt_low_pass_weight<T: RealField + Copy>(
     parameters: &Parameters<T>,
     period: Seconds<T>,
 ) -> T {
@@ -114,8 +114,17 @@ pub(super) fn tilt_low_pass_weight<T: RealField + Copy>(
     low_pass_weight(Seconds(time), period)
 }
 
+/// The share of the low-passed error that is corrected in a sample, ω₀Δt/2ζ.
+pub(crate) fn tilt_correction<T: RealField + Copy>(
+    parameters: &Parameters<T>,
+    period: Seconds<T>,
+) -> T {
+    let natural = convert::<f64, T>(core::f64::consts::SQRT_2) / parameters.tilt_time.0;
+    weight(natural * period.0 / (parameters.damping * convert(2.0)))
+}
+
 /// A weight of no meaning is the nearer end; one that is not a number is none.
-pub(super) fn weight<T: RealField + Copy>(value: T) -> T {
+pub(crate) fn weight<T: RealField + Copy>(value: T) -> T {
     if value > T::zero() {
         value.min(T::one())
     } else {
@@ -124,7 +133,7 @@ pub(super) fn weight<T: RealField + Copy>(value: T) -> T {
 }
 
 /// A size or a gain that has no meaning is none.
-pub(super) fn size<T: RealField + Copy>(value: T) -> T {
+pub(crate) fn size<T: RealField + Copy>(value: T) -> T {
     if value > T::zero() && value.is_finite() {
         value
     } else {
@@ -134,7 +143,7 @@ pub(super) fn size<T: RealField + Copy>(value: T) -> T {
 
 /// Whole samples in a time, at least one; what is no time is one sample, what is without end the
 /// largest number.
-pub(super) fn samples<T: RealField + Copy>(time: Seconds<T>, period: Seconds<T>) -> u32 {
+pub(crate) fn samples<T: RealField + Copy>(time: Seconds<T>, period: Seconds<T>) -> u32 {
     let count: f32 = try_convert((time.0 / period.0).round()).unwrap_or(0.0);
     // A cast to an integer saturates, and makes zero of what is not a number.
     (count as u32).max(1)
@@ -142,11 +151,11 @@ pub(super) fn samples<T: RealField + Copy>(time: Seconds<T>, period: Seconds<T>)
 
 /// A count as a scalar. By way of single precision, which is what the board has, and near enough for a
 /// time.
-pub(super) fn scalar<T: RealField + Copy>(count: u32) -> T {
+pub(crate) fn scalar<T: RealField + Copy>(count: u32) -> T {
     convert(count as f32)
 }
 
 /// 1/n: what the nth of as many has a share of in their mean.
-pub(super) fn share<T: RealField + Copy>(count: u32) -> T {
+pub(crate) fn share<T: RealField + Copy>(count: u32) -> T {
     T::one() / scalar(count)
 }

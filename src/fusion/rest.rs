@@ -24,20 +24,26 @@ pub enum Motion {
 #[derive(Clone, Copy, Debug)]
 pub struct Rest<T: RealField> {
     coefficients: Coefficients<T>,
-    /// Sums of the block that is under way, and how many samples are in it.
+    /// Sums of the block that is under way.
     block: (Vector3<T>, Vector3<T>),
-    samples: u32,
     /// Low-passed rate, rad/s, and force, m/s²; none before the first block.
     mean: Option<(Vector3<T>, Vector3<T>)>,
     /// Blocks in a row close to the mean.
     calm: u32,
     /// The low-passed force when they began, m/s².
     anchor: Vector3<T>,
-    /// Sum of the rates of those blocks, without the first third, and how many: what came before has
-    /// died away by then.
+    /// Sum of the rates of those blocks until the rest begins, without the first third, and how many:
+    /// what came before has died away by then.
     settled: (Vector3<T>, u32),
-    /// Rate of the last block, rad/s.
+    /// Rate and force of the last block, rad/s and m/s².
     rate: Vector3<T>,
+    force: Vector3<T>,
+    /// Whether its rate is close to the mean, and that is one of a rest.
+    close: bool,
+    /// Blocks of calm that make a rest.
+    enough: u32,
+    /// Whether the last block belongs to a rest.
+    still: bool,
     motion: Motion,
 }
 
@@ -60,9 +66,9 @@ struct Coefficients<T> {
 }
 
 /// Calm for so many times as long as a rest takes outdoes a bias known before.
-const LONG: u32 = 4;
-/// Most the low-passed force may wander while nothing moves, m/s², squared: a turn of 1°.
-const WANDER: f64 = 0.17 * 0.17;
+pub const LONG: u32 = 4;
+/// Most the low-passed force may wander while nothing moves, m/s²: a turn of 1°.
+pub const WANDER: f64 = 0.17;
 
 impl<T: RealField + Copy> Coefficients<T> {
     fn new(parameters: &Parameters<T>, period: Seconds<T>) -> Self {
@@ -87,12 +93,15 @@ impl<T: RealField + Copy> Rest<T> {
         Self {
             coefficients: Coefficients::new(parameters, period),
             block: (Vector3::zeros(), Vector3::zeros()),
-            samples: 0,
             mean: None,
             calm: 0,
             anchor: Vector3::zeros(),
             settled: (Vector3::zeros(), 0),
             rate: Vector3::zeros(),
+            force: Vector3::zeros(),
+            close: false,
+            enough: u32::MAX,
+            still: false,
             motion: Motion::Moving { samples: 0 },
         }
     }
@@ -101,26 +110,79 @@ impl<T: RealField + Copy> Rest<T> {
         self.coefficients = Coefficients::new(parameters, period);
     }
 
-    /// One sample, rad/s with its bias and m/s², body frame. True if a block has ended with it, and
-    /// [`Self::motion`] has been judged anew.
-    pub fn update(
-        &mut self,
-        rate: Vector3<T>,
-        force: Vector3<T>,
-        known: Option<AngularRate<T>>,
-    ) -> bool {
+    /// One sample, rad/s with its bias and m/s², body frame.
+    pub fn add(&mut self, rate: Vector3<T>, force: Vector3<T>) {
         self.block = (self.block.0 + rate, self.block.1 + force);
-        self.samples += 1;
-        if self.samples < DECIMATION {
-            return false;
-        }
+    }
+
+    /// A block of [`DECIMATION`] samples has ended: its rate. `known` is the bias as measured in the last
+    /// rest.
+    ///
+    /// A steady slow turn about the vertical looks like a bias to a gyro and an accelerometer; about
+    /// any other axis the force turns with it. What bounds it is how large a bias usually is, and, once
+    /// one was measured at rest, how far it can have drifted since. A rate that is plausible
+    /// but far from the known bias must stay for a few seconds.
+    pub fn look_at_rate(&mut self, known: Option<AngularRate<T>>) {
+        let Coefficients {
+            low_pass,
+            rate: limit,
+            plausible_bias,
+            largest_change,
+            calm,
+            long,
+            ..
+        } = self.coefficients;
         let share = share::<T>(DECIMATION);
         let (rate, force) = (self.block.0 * share, self.block.1 * share);
         self.block = (Vector3::zeros(), Vector3::zeros());
-        self.samples = 0;
-        let still = self.is_still(rate, force, known);
+        (self.rate, self.force) = (rate, force);
+        let (mean, mean_force) = self.mean.unwrap_or((rate, force));
+        let mean = mean + (rate - mean) * low_pass;
+        self.mean = Some((mean, mean_force));
+        let near = |known: AngularRate<T>| (mean - known.rad_per_s()).amax() <= largest_change;
+        let is_known = known.is_some_and(near);
+        self.enough = if known.is_none() || is_known {
+            calm
+        } else {
+            long
+        };
+        self.close =
+            (rate - mean).norm_squared() < limit && (is_known || mean.amax() <= plausible_bias);
+    }
+
+    /// Its force, with which it is known whether the block was still.
+    pub fn look_at_force(&mut self) {
+        let Coefficients {
+            low_pass,
+            force: limit,
+            ..
+        } = self.coefficients;
+        let (mean_rate, mean) = self.mean.unwrap_or((self.rate, self.force));
+        let mean = mean + (self.force - mean) * low_pass;
+        self.mean = Some((mean_rate, mean));
+        if self.calm == 0 {
+            self.anchor = mean;
+        }
+        let close = self.close
+            && (self.force - mean).norm_squared() < limit
+            && (mean - self.anchor).norm_squared() < convert(WANDER * WANDER);
+        if close {
+            self.calm = self.calm.saturating_add(1);
+        } else {
+            self.calm = 0;
+        }
+        self.still = self.calm >= self.enough;
+    }
+
+    /// Whether there was a block to look at since the start.
+    pub fn has_looked(&self) -> bool {
+        self.mean.is_some()
+    }
+
+    /// What to make of it.
+    pub fn judge(&mut self) -> Motion {
         let more = |samples: u32| samples.saturating_add(DECIMATION);
-        self.motion = match (still, self.motion) {
+        self.motion = match (self.still, self.motion) {
             (true, Motion::Still { samples }) => Motion::Still {
                 samples: more(samples),
             },
@@ -134,57 +196,23 @@ impl<T: RealField + Copy> Rest<T> {
                 samples: DECIMATION,
             },
         };
-        true
+        self.motion
     }
 
-    /// A steady slow turn about the vertical looks like a bias to a gyro and an accelerometer; about
-    /// any other axis the force turns with it. What bounds it is how large a bias usually is, and, once
-    /// one was measured at rest (`known`), how far it can have drifted since. A rate that is plausible
-    /// but far from the known bias must stay for a few seconds.
-    fn is_still(
-        &mut self,
-        rate: Vector3<T>,
-        force: Vector3<T>,
-        known: Option<AngularRate<T>>,
-    ) -> bool {
-        let Coefficients {
-            low_pass,
-            rate: rate_limit,
-            force: force_limit,
-            plausible_bias,
-            largest_change,
-            calm,
-            long,
-        } = self.coefficients;
-        let (mean_rate, mean_force) = self.mean.unwrap_or((rate, force));
-        let mean_rate = mean_rate + (rate - mean_rate) * low_pass;
-        let mean_force = mean_force + (force - mean_force) * low_pass;
-        self.mean = Some((mean_rate, mean_force));
-        let near = |known: AngularRate<T>| (mean_rate - known.rad_per_s()).amax() <= largest_change;
-        let is_known = known.is_some_and(near);
-        let plausible = mean_rate.amax() <= plausible_bias;
-        if self.calm == 0 {
-            self.anchor = mean_force;
+    /// Keeps the rate of a block that may be the beginning of a rest.
+    pub fn settle(&mut self) {
+        let third = self.coefficients.calm / 3;
+        match (self.calm.saturating_sub(third), self.motion) {
+            (0, _) => {}
+            (1, _) => self.settled = (self.rate, 1),
+            (_, Motion::Still { samples }) if samples > DECIMATION => {}
+            _ => self.settled = (self.settled.0 + self.rate, self.settled.1.saturating_add(1)),
         }
-        let close = (rate - mean_rate).norm_squared() < rate_limit
-            && (force - mean_force).norm_squared() < force_limit
-            && (mean_force - self.anchor).norm_squared() < convert(WANDER)
-            && (is_known || plausible);
-        self.rate = rate;
-        if close {
-            self.calm = self.calm.saturating_add(1);
-            if self.calm > calm / 3 {
-                self.settled = (self.settled.0 + rate, self.settled.1.saturating_add(1));
-            }
-        } else {
-            self.forget();
-        }
-        let enough = if known.is_none() || is_known {
-            calm
-        } else {
-            long
-        };
-        self.calm >= enough
+    }
+
+    /// Whether the last block is the first of a rest.
+    pub fn begins(&self) -> bool {
+        matches!(self.motion, Motion::Still { samples } if samples <= DECIMATION)
     }
 
     /// The low-passed rate, rad/s, body frame; zero before the first sample.
@@ -203,20 +231,14 @@ impl<T: RealField + Copy> Rest<T> {
         self.rate
     }
 
-    fn forget(&mut self) {
-        self.calm = 0;
-        self.settled = (Vector3::zeros(), 0);
-    }
-
     pub fn motion(&self) -> Motion {
         self.motion
     }
 
-    /// Forgets what it saw, but not since when the board moves.
+    /// Forgets what it saw, but not since when the board moves. A rest is over.
     pub fn restart(&mut self) {
         self.block = (Vector3::zeros(), Vector3::zeros());
-        self.samples = 0;
         self.mean = None;
-        self.forget();
+        self.calm = 0;
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::random::Random;
 use vrduino::calibration::GyroBias;
-use vrduino::fixed::complementary::{Bias, Complementary, Nanoseconds, Parameters};
+use vrduino::fixed::complementary::{Bias, Complementary, Force, Nanoseconds, Parameters};
 use vrduino::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use vrduino::orientation::{TimeConstant, complementary};
 use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample, Sample};
@@ -56,7 +56,7 @@ impl Pair {
     }
 
     pub fn reset(&mut self, raw: &RawSample) {
-        self.fixed.reset(raw.accel);
+        self.fixed.reset(Force::from_counts(raw.accel));
         self.reference.reset(self.ranges.sample(raw).force);
     }
 

@@ -3,7 +3,7 @@
 use crate::random::Random;
 use crate::reference::{Pair, degrees_apart, orientation};
 use vrduino::calibration::GyroBias;
-use vrduino::fixed::complementary::{Bias, Complementary, Nanoseconds, Parameters};
+use vrduino::fixed::complementary::{Bias, Complementary, Force, Nanoseconds, Parameters};
 use vrduino::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use vrduino::orientation::TimeConstant;
 use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample};
@@ -90,7 +90,7 @@ fn a_reset_levels_any_force() {
     }
     for force in forces {
         let mut filter = filter(GyroRange::Dps2000, 1_000_000, 7.6);
-        filter.reset(force);
+        filter.reset(Force::from_counts(force));
         assert_unit(&filter, force);
         let force = Vector3::from(force.map(f64::from));
         if force.norm() > 0.0 {
@@ -163,7 +163,7 @@ fn millions_of_random_samples_leave_a_unit_quaternion() {
 #[test]
 fn free_fall_corrects_nothing() {
     let mut filter = filter(GyroRange::Dps2000, 1_000_000, 0.0);
-    filter.reset([9000, -3000, 7000]);
+    filter.reset(Force::from_counts([9000, -3000, 7000]));
     let before = orientation(&filter);
     for _ in 0..1000 {
         filter.update(&sample([0; 3], [0; 3]));
@@ -223,15 +223,16 @@ fn it_goes_on_from_any_orientation() {
     let mut filter = filter(GyroRange::Dps2000, 1_000_000, 7.6);
     for _ in 0..10_000 {
         let set = UnitQuaternion::from_scaled_axis(Vector3::from(random.vector(3.0)));
-        filter.set(&set.cast());
+        let length = random.between(0.51, 1.99);
+        let Quaternion { coords } = set.into_inner() * length;
+        let bits = |part: f64| (part * f64::from(1 << 30)) as i32;
+        assert!(filter.set([coords.w, coords.x, coords.y, coords.z].map(bits)));
         assert_unit(&filter, set);
-        assert!(degrees_apart(set, orientation(&filter)) < 2e-5);
+        assert!(degrees_apart(set, orientation(&filter)) < 2e-6);
     }
     let before = filter.bits();
-    for nonsense in [f32::NAN, f32::INFINITY, 0.0, 3.0] {
-        filter.set(&UnitQuaternion::new_unchecked(Quaternion::new(
-            nonsense, 0.0, 0.0, 0.0,
-        )));
+    for nonsense in [[0; 4], [1, 2, 3, 4], [i32::MIN; 4], [1 << 28, 0, 0, 0]] {
+        assert!(!filter.set(nonsense));
         assert_eq!(filter.bits(), before);
     }
 }

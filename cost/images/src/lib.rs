@@ -8,7 +8,7 @@
 //! | `ours` | the library's filters behind it |
 //! | `textbook` | the course's filter as a student writes it, with sine, cosine and arc cosine |
 //! | `straightforward` | the same by the types of nalgebra |
-//! | `motion` | motions that go to every end, for the filter in fixed point |
+//! | `motion`, `fusion` | motions that go to every end, for the two filters in fixed point |
 //! | `run` | runs a filter on the chip |
 
 #![no_std]
@@ -25,6 +25,8 @@ pub mod textbook;
 pub mod straightforward;
 
 pub mod motion;
+
+pub mod fusion;
 
 #[cfg(target_os = "none")]
 pub mod run;

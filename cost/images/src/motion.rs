@@ -99,12 +99,12 @@ impl Random {
     }
 
     /// From −`size` to just below `size`.
-    fn noise(&mut self, size: i16) -> i16 {
+    pub(crate) fn noise(&mut self, size: i16) -> i16 {
         let bits = (self.next() as i32) >> 16;
         ((bits * i32::from(size)) >> 15) as i16
     }
 
-    fn counts(&mut self) -> i16 {
+    pub(crate) fn counts(&mut self) -> i16 {
         let bits = self.next();
         match bits & 7 {
             0 => 0,

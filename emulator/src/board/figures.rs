@@ -1,6 +1,7 @@
 //! A run in a few numbers, for programs that compare runs.
 
 use super::Board;
+use super::latency::Latencies;
 use crate::time::{SECOND, Ticks};
 
 /// What a board has come to so far.
@@ -13,6 +14,8 @@ pub struct Figures {
     /// From data-ready to the packet in the USB controller's hands, in seconds: median, 99 % and worst. None if no packet
     /// followed a sample.
     pub latency: Option<[f64; 3]>,
+    /// The same to the moment at which the host begins to take the packet.
+    pub to_host: Option<[f64; 3]>,
     /// The deepest stack in bytes.
     pub stack: u32,
     /// Static RAM in bytes, if the image tells.
@@ -29,6 +32,7 @@ impl Board {
         let bus = self.chip_quietly().i2c.busy_time();
         self.began = (self.now, self.measure.awake, bus);
         self.latencies.clear();
+        self.taken.clear();
     }
 
     /// The figures since [`Board::begin_figures`], or since power-on.
@@ -39,17 +43,19 @@ impl Board {
         let now = self.measure.awake;
         let busy = self.shared.chip().i2c.busy_time();
         let seconds = |ticks: Ticks| ticks as f64 / SECOND as f64;
-        let percentile = |percent| self.latencies.percentile(percent).map(seconds);
+        let percentiles = |times: &Latencies| {
+            let percentile = |percent| times.percentile(percent).map(seconds);
+            let [median, most, worst] = [50, 99, 100].map(percentile);
+            Some([median?, most?, worst?])
+        };
         Figures {
             load: (
                 share(now.least - awake.least),
                 share(now.greatest - awake.greatest),
             ),
             bus: share(busy.saturating_sub(bus)),
-            latency: percentile(50)
-                .zip(percentile(99))
-                .zip(percentile(100))
-                .map(|((median, most), worst)| [median, most, worst]),
+            latency: percentiles(&self.latencies),
+            to_host: percentiles(&self.taken),
             stack: self.image.stack.saturating_sub(self.measure.stack_low),
             ram: self.image.ram_used(),
             flash: self.image.flash_used(),

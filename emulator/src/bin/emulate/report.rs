@@ -126,11 +126,17 @@ impl Report {
         }
         say!("stack   {} bytes at its deepest", figures.stack);
         say!("bus     {:.1} % in use, I2C", 100.0 * figures.bus);
-        if let Some(times) = figures.latency {
-            let [median, most, worst] = times.map(|seconds| 1e3 * seconds);
-            say!(
-                "latency {median:.3} ms from data-ready to the packet at its endpoint in the median, {most:.3} ms at 99 %, {worst:.3} ms at worst"
-            );
+        let ways = [
+            ("to the packet at its endpoint", figures.latency),
+            ("to the host", figures.to_host),
+        ];
+        for (way, times) in ways {
+            if let Some(times) = times {
+                let [median, most, worst] = times.map(|seconds| 1e3 * seconds);
+                say!(
+                    "latency {median:.3} ms from data-ready {way} in the median, {most:.3} ms at 99 %, {worst:.3} ms at worst"
+                );
+            }
         }
         for (number, latency) in INTERRUPTS.iter().zip(&board.measure().latencies) {
             if latency.count > 0 {

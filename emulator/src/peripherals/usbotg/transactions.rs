@@ -35,6 +35,11 @@ impl UsbController {
             && Descriptor::read(address, ram).is_some_and(Descriptor::is_owned)
     }
 
+    /// Whether the host has begun to take a packet, of another endpoint than 0, since this was last asked.
+    pub fn take_gone(&mut self) -> bool {
+        std::mem::take(&mut self.gone)
+    }
+
     /// Looks whether the program has touched what the controller owns, in both banks of an endpoint.
     pub(super) fn look_at_owners(
         &mut self,
@@ -187,6 +192,8 @@ impl UsbController {
         self.complete(transaction, length, Pid::In);
         if place.endpoint == 0 {
             self.address_to_come = None;
+        } else {
+            self.gone = true;
         }
         Answer::Data(data, descriptor.data1())
     }
