@@ -3,8 +3,6 @@
 //! A program made by [`filters!`](crate::filters) waits at the end of `main`. Whoever counts makes it go on at the
 //! function `run` of a filter's module, counts the calls of `update` beside it, and waits for `STATE`.
 
-#![allow(unsafe_code, reason = "registers")]
-
 use crate::filter::Filter;
 use crate::head::{Counts, SAMPLES};
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -22,22 +20,6 @@ static KEPT: [AtomicU32; 8 * SAMPLES / KEPT_EVERY] =
 /// 1 while a filter can be run, 2 when it has been.
 #[used]
 static STATE: AtomicU32 = AtomicU32::new(0);
-
-/// Switches the watchdog off (K20 manual, WDOG).
-///
-/// # Safety
-///
-/// To be called once, early enough, before memory is initialised; it uses none.
-pub unsafe fn without_watchdog() {
-    const UNLOCK: *mut u16 = 0x4005_200E as *mut u16;
-    const STCTRLH: *mut u16 = 0x4005_2000 as *mut u16;
-    // SAFETY: a register of the chip.
-    unsafe { UNLOCK.write_volatile(0xC520) };
-    // SAFETY: as above.
-    unsafe { UNLOCK.write_volatile(0xD928) };
-    // SAFETY: as above.
-    unsafe { STCTRLH.write_volatile(0x01D2) };
-}
 
 /// Goes to 72 MHz and waits to be sent elsewhere.
 pub fn wait() -> ! {
@@ -98,13 +80,6 @@ macro_rules! filters {
         /// Nothing calls them from here.
         #[used]
         static FILTERS: &[extern "C" fn() -> !] = &[$($name::run),*];
-
-        // SAFETY: the start-up code calls this once, before memory is initialised.
-        #[unsafe(no_mangle)]
-        extern "C" fn __pre_init() {
-            // SAFETY: as above.
-            unsafe { $crate::run::without_watchdog() };
-        }
 
         #[cortex_m_rt::entry]
         fn main() -> ! {

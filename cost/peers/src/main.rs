@@ -6,6 +6,9 @@
 #![no_std]
 #![no_main]
 
+#[path = "../../images/src/watchdog.rs"]
+mod watchdog;
+
 use ahrs::{Madgwick, Mahony};
 use cortex_m_rt as _;
 use fusion_ahrs::{Ahrs, AhrsSettings, Convention, Vector};

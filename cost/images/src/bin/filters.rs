@@ -5,12 +5,14 @@
 
 #[path = "../../../../src/board/multiply.rs"]
 mod multiply;
+#[path = "../watchdog.rs"]
+mod watchdog;
 
 use multiply::Instructions;
 use panic_halt as _;
 use vrduino::fixed::multiply::Portable;
 use vrduino_cost_images::head::HEAD;
-use vrduino_cost_images::ours::{Course, CourseInFixedPoint, Default};
+use vrduino_cost_images::ours::{Course, CourseInFixedPoint, Default, DefaultInFixedPoint};
 use vrduino_cost_images::straightforward::Straightforward;
 use vrduino_cost_images::textbook::Textbook;
 
@@ -19,6 +21,14 @@ vrduino_cost_images::filters! {
     course_fixed: CourseInFixedPoint<Instructions>, on HEAD;
     #[unsafe(link_section = ".data.filter")]
     course_fixed_portable: CourseInFixedPoint<Portable>, on HEAD;
+    #[unsafe(link_section = ".data.filter")]
+    default_fixed: DefaultInFixedPoint<Instructions, false>, on HEAD;
+    #[unsafe(link_section = ".data.filter")]
+    default_fixed_portable: DefaultInFixedPoint<Portable, false>, on HEAD;
+    #[unsafe(link_section = ".data.filter")]
+    default_fixed_compass: DefaultInFixedPoint<Instructions, true>, on HEAD;
+    #[unsafe(link_section = ".data.filter")]
+    default_fixed_compass_portable: DefaultInFixedPoint<Portable, true>, on HEAD;
     course_f32: Course<f32>, on HEAD;
     default_f32: Default<f32, false>, on HEAD;
     default_f32_compass: Default<f32, true>, on HEAD;
