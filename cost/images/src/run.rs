@@ -33,10 +33,11 @@ pub fn wait() -> ! {
 }
 
 /// The first sample by itself, all others by `update`.
-pub fn run<F: Filter>(input: &[Counts; SAMPLES], update: fn(&mut F, &Counts)) -> ! {
-    let [first, others @ ..] = input;
-    let mut filter = F::start();
-    filter.update(first);
+pub fn run<F: Filter>(input: &[Counts], update: fn(&mut F, &Counts)) -> ! {
+    let (mut filter, mut others) = (F::start(), input);
+    if let Some(first) = others.split_off_first() {
+        filter.update(first);
+    }
     let mut kept = KEPT.chunks_exact(8);
     for (number, counts) in others.iter().enumerate() {
         update(&mut filter, counts);
@@ -55,10 +56,11 @@ pub fn run<F: Filter>(input: &[Counts; SAMPLES], update: fn(&mut F, &Counts)) ->
     }
 }
 
-/// A program that can run any of these filters: `name: Type, on INPUT;`, with attributes for where its update lies.
+/// A program that can run any of these filters: `name: Type, on so many of INPUT;`, with attributes for where its update
+/// lies.
 #[macro_export]
 macro_rules! filters {
-    ($($(#[$attribute:meta])* $name:ident: $filter:ty, on $input:path;)*) => {
+    ($($(#[$attribute:meta])* $name:ident: $filter:ty, on $samples:ident of $input:ident;)*) => {
         $(
             #[allow(unused_imports, reason = "the types are named from outside")]
             mod $name {
@@ -72,7 +74,7 @@ macro_rules! filters {
 
                 #[inline(never)]
                 pub extern "C" fn run() -> ! {
-                    $crate::run::run(&$input, update)
+                    $crate::run::run(&$input[..$samples], update)
                 }
             }
         )*

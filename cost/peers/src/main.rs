@@ -17,7 +17,7 @@ use nalgebra::Vector3;
 use panic_halt as _;
 use vqf_rs::VQF;
 use vrduino_cost_images::filter::{Filter, PERIOD_S};
-use vrduino_cost_images::head::{Counts, HEAD_Z_UP};
+use vrduino_cost_images::head::{Counts, FEW, HEAD_Z_UP};
 
 const DPS_PER_COUNT: f32 = 2000.0 / 32768.0;
 const G_PER_COUNT: f32 = 2.0 / 32768.0;
@@ -146,12 +146,12 @@ impl<const COMPASS: bool> Filter for Vqf<COMPASS> {
 }
 
 vrduino_cost_images::filters! {
-    madgwick_6: OfAhrs<Madgwick<f32>, false>, on HEAD_Z_UP;
-    madgwick_9: OfAhrs<Madgwick<f32>, true>, on HEAD_Z_UP;
-    mahony_6: OfAhrs<Mahony<f32>, false>, on HEAD_Z_UP;
-    mahony_9: OfAhrs<Mahony<f32>, true>, on HEAD_Z_UP;
-    xio_fusion_6: XioFusion<false>, on HEAD_Z_UP;
-    xio_fusion_9: XioFusion<true>, on HEAD_Z_UP;
-    vqf_6: Vqf<false>, on HEAD_Z_UP;
-    vqf_9: Vqf<true>, on HEAD_Z_UP;
+    madgwick_6: OfAhrs<Madgwick<f32>, false>, on FEW of HEAD_Z_UP;
+    madgwick_9: OfAhrs<Madgwick<f32>, true>, on FEW of HEAD_Z_UP;
+    mahony_6: OfAhrs<Mahony<f32>, false>, on FEW of HEAD_Z_UP;
+    mahony_9: OfAhrs<Mahony<f32>, true>, on FEW of HEAD_Z_UP;
+    xio_fusion_6: XioFusion<false>, on FEW of HEAD_Z_UP;
+    xio_fusion_9: XioFusion<true>, on FEW of HEAD_Z_UP;
+    vqf_6: Vqf<false>, on FEW of HEAD_Z_UP;
+    vqf_9: Vqf<true>, on FEW of HEAD_Z_UP;
 }
