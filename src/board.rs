@@ -38,8 +38,7 @@ use cortex_m::peripheral::NVIC;
 use mk20dx_hal::pac;
 use vrduino::calibration::record::Record;
 use vrduino::imu::magnetometer::MagnetometerError;
-use vrduino::sampling::{Lock, Timing};
-use vrduino::sensor::RawSample;
+use vrduino::sampling::Lock;
 use vrduino::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use vrduino::tracker::Health;
 use vrduino::wire;
@@ -62,7 +61,8 @@ pub use imu::Fault;
 pub struct Board {
     /// The serial port.
     pub usb: Usb,
-    imu: Imu,
+    /// The sensor.
+    pub imu: Imu,
     calibration: Calibration,
     led: Led,
     loader: Loader,
@@ -141,18 +141,23 @@ impl Board {
         Ok(compass.ok())
     }
 
-    /// Sleeps until the sensor's next sample is there, every tenth or so with a field, and says when it was ready.
+    /// Sleeps until the sensor's next sample is there, in [`Imu::sample`] and [`Imu::timing`]. Returns what the
+    /// magnetometer has measured since the one before, every tenth time or so.
     ///
     /// A burst that failed is bridged by the sample before it, marked as not fresh; a sensor that
     /// fails for longer is a fault. A magnetometer that fails is none: tracking goes on without.
-    pub fn next_sample(&mut self) -> Result<(RawSample, Timing, Option<RawField>), Fault> {
+    #[inline(never)] // in SRAM, see memory.x
+    pub fn next_sample(&mut self) -> Result<Option<RawField>, Fault> {
         breadcrumb::mark(Stage::Sampling);
-        let field = self.imu.next_sample()?;
-        if let Some(Err(loss)) = field {
-            self.no_compass = Some(MagnetometerError::Lost(loss));
-            self.tell_of_compass();
+        match self.imu.next_sample()? {
+            None => Ok(None),
+            Some(Ok(field)) => Ok(Some(field)),
+            Some(Err(loss)) => {
+                self.no_compass = Some(MagnetometerError::Lost(loss));
+                self.tell_of_compass();
+                Ok(None)
+            }
         }
-        Ok((self.imu.sample, self.imu.timing, field.and_then(Result::ok)))
     }
 
     /// Chooses what the sensor is read by, from the next sample on.
@@ -247,6 +252,7 @@ impl Board {
     }
 
     /// Says why there is no compass, if there is none.
+    #[cold]
     fn tell_of_compass(&mut self) {
         if let Some(error) = self.no_compass {
             self.usb.send(&wire::magnetometer_failed(&error));

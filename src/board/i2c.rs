@@ -255,10 +255,13 @@ impl I2c {
     /// late, and it has come and was acknowledged: then another has to be read and refused.
     #[inline(always)]
     pub(super) fn refuse_last(&mut self) -> bool {
+        // DMA leaves the interrupt's flag as it is, which would interrupt once DMAEN is gone.
+        self.clear_flags();
         self.control(IICEN | IICIE | MST | TXAK);
         let late = self.status() & TCF != 0;
-        // DMA leaves the interrupt's flag as it is.
-        self.clear_flags();
+        if late {
+            self.clear_flags();
+        }
         late
     }
 

@@ -123,7 +123,7 @@ impl Imu {
 
     /// Sleeps until the next burst has come in, or has failed and is bridged: see [`Imu::sample`] and [`Imu::timing`].
     /// Now and then the magnetometer has measured since the one before; that it is lost is said once.
-    #[inline(never)] // in SRAM, see memory.x
+    #[inline(always)]
     pub fn next_sample(&mut self) -> Result<Option<Result<RawField, Loss>>, Fault> {
         clock::sleep_until(|| self.samples.ready());
         let Some(sampled) = self.samples.peek() else {

@@ -222,7 +222,8 @@ impl<M: Multiply> Complementary<M> {
         let Some(q) = q.normalised_anywhere() else {
             return false;
         };
-        self.orientation = q;
+        // Once more: a root in few steps is good to seven digits.
+        self.orientation = q.normalised();
         true
     }
 

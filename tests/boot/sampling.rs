@@ -6,7 +6,7 @@ use vrduino_emulator::motion::turns::Turns;
 use vrduino_emulator::mpu9250::Part;
 use vrduino_emulator::time::{self, MICROSECOND, MILLISECOND, SECOND};
 
-use crate::run::{Run, X};
+use crate::run::Run;
 
 /// Seconds from power-on until the loop is locked: half a second for the start, two for the loop.
 const LOCKED: f64 = 2.5;
@@ -100,22 +100,28 @@ fn a_sample_is_on_its_way_within_half_a_millisecond() {
     assert!(worst < 140 * MICROSECOND, "{} s", time::seconds(worst));
 }
 
-/// What everything around the filter may take of the core, at the pessimistic end of the band: 3 % are 2160 cycles for a
-/// sample.
-const AROUND_THE_FILTER: f64 = 0.045;
+/// What everything around the filter may take for a sample, a hundred lines a second among it: cycles at the pessimistic
+/// end of the band.
+const AROUND_THE_FILTER: f64 = 4800.0;
 
 #[test]
 fn the_way_around_the_filter_is_short() {
-    // A board that is turned from the first moment on has no orientation for five seconds, so no filter runs yet.
-    let mut setup = Setup::new(Box::new(Turns::new(0.0, 0.0).turn(X, 3600.0, 60.0)));
+    let mut setup = Setup::new(Box::new(Turns::new(1e6, 0.0)));
     (setup.part, setup.pace) = (off(0.003), Pace::Greatest);
+    setup.timed_function = "Tracker::track".into();
     let mut run = Run::with(setup);
     run.seconds(LOCKED);
     run.board.begin_figures();
+    let before = run.board.measure().calls;
     run.seconds(2.0);
-    assert!(run.orientations.is_empty(), "{}", run.text);
     let figures = run.board.figures();
-    assert!(figures.load.1 < AROUND_THE_FILTER, "{figures:?}");
+    let calls = run.board.measure().calls;
+    let samples = (calls.count - before.count) as f64;
+    assert!((samples - 2006.0).abs() < 2.0, "{samples} samples");
+    let filter = (calls.cycles.greatest - before.cycles.greatest) as f64;
+    let all = 72e6 * 2.0 * figures.load.1;
+    let around = (all - filter) / samples;
+    assert!(around < AROUND_THE_FILTER, "{around} cycles: {figures:?}");
     assert!(figures.bus < 0.5, "{figures:?}");
     assert!(figures.ram < Some(12 * 1024), "{figures:?}");
 }
