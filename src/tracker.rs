@@ -88,7 +88,7 @@ pub struct Tracker<M = Portable> {
     views: Views<M>,
     compass: Compass,
     use_compass: UseCompass,
-    calibration: Calibration,
+    calibration: Calibration<M>,
     phase: Phase,
     ticks: u32,
     counts: Tally,
@@ -196,6 +196,7 @@ impl<M: Multiply> Tracker<M> {
     /// Without, every field is passed over.
     pub fn set_magnetometer(&mut self, adjustment: Option<SensitivityAdjustment>) {
         self.compass = Compass::of(adjustment);
+        self.calibration.set_magnetometer(adjustment);
     }
 
     /// What was found by calibrations before, and kept.
@@ -312,8 +313,8 @@ impl<M: Multiply> Tracker<M> {
         if !self.follows_compass() {
             return None;
         }
-        let field = self.compass.last()?.ok()?;
-        Some(Field::new(self.calibration.field(field)))
+        raw.check().ok()?;
+        self.calibration.field(&raw)
     }
 
     /// A sensor at the end of its range hides how far beyond it the truth is. It is told of when it

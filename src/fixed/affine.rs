@@ -73,7 +73,7 @@ impl<M: Multiply> Accelerometer<M> {
     /// For a sensor at this range. None if it changes what is measured by more than a quarter, or by more than a
     /// quarter of the range: no sensor is so far off.
     pub fn new(calibration: &Calibration<SpecificForce<f32>>, range: AccelRange) -> Option<Self> {
-        let counts_per_g = 32_768.0 / range.max_g() as f32;
+        let counts_per_g = f32::from(range.counts_per_g());
         let difference = calibration.matrix() - Matrix3::identity();
         let offset = calibration.offset().g() * counts_per_g;
         let is_near = offset.iter().all(|part| part.abs() <= 8_192.0);
