@@ -19,6 +19,7 @@ use board::breadcrumb::{self, Stage};
 use board::multiply::Instructions;
 use board::{Board, Fault};
 use panic_halt as _; // a panic stops the core; the watchdog restarts it and the breadcrumb tells
+use vrduino::command::Command;
 use vrduino::imu::RANGES;
 use vrduino::tracker::Tracker;
 
@@ -40,30 +41,46 @@ fn main() -> ! {
 }
 
 /// Tracks until the sensor is lost.
-///
-/// One turn for each sample of the sensor, a thousand a second; a turn that comes late finds its sample in a queue and
-/// catches up.
 fn track(board: &mut Board, tracker: &mut Tracker<Instructions>) -> Result<Infallible, Fault> {
     let adjustment = board.start_imu()?;
     tracker.set_magnetometer(adjustment);
     tracker.resume();
     loop {
-        let field = board.next_sample()?;
-        while let Some(command) = board.usb.command() {
-            tracker.command(command, &mut |line| board.usb.send(line));
-        }
-        board.lock_on(tracker.lock());
-        if let Some(record) = tracker.take_calibration_to_keep() {
-            board.keep_calibration(&record);
-        }
-        breadcrumb::mark(Stage::Filter);
-        let health = board.health();
-        tracker.timed(&board.imu.timing);
-        let sample = &board.imu.sample;
-        let frame = tracker.update(sample, field, &health, &mut |line| board.usb.send(line));
-        if let Some(frame) = frame {
-            board.usb.send(&frame);
-        }
-        board.end_of_turn();
+        turn(board, tracker)?;
+    }
+}
+
+/// One for each sample of the sensor, a thousand a second; one that comes late finds its sample in a queue and catches
+/// up.
+#[inline(never)] // in SRAM, see memory.x
+fn turn(board: &mut Board, tracker: &mut Tracker<Instructions>) -> Result<(), Fault> {
+    let field = board.next_sample()?;
+    if let Some(command) = board.usb.command() {
+        obey(board, tracker, command);
+    }
+    breadcrumb::mark(Stage::Filter);
+    let health = board.health();
+    tracker.timed(&board.imu.timing);
+    let sample = &board.imu.sample;
+    let frame = tracker.update(sample, field, &health, &mut |line| board.usb.send(line));
+    if let Some(frame) = frame {
+        board.usb.send(&frame);
+    }
+    board.end_of_turn();
+    Ok(())
+}
+
+/// This command and whatever else the host has typed.
+#[cold]
+#[inline(never)]
+fn obey(board: &mut Board, tracker: &mut Tracker<Instructions>, first: Command) {
+    let mut next = Some(first);
+    while let Some(command) = next {
+        tracker.command(command, &mut |line| board.usb.send(line));
+        next = board.usb.command();
+    }
+    board.lock_on(tracker.lock());
+    if let Some(record) = tracker.take_calibration_to_keep() {
+        board.keep_calibration(&record);
     }
 }

@@ -105,12 +105,12 @@ impl RawSample {
     }
 
     /// True if any axis stands at the end of its range: the true value may lie beyond it.
+    #[inline(always)]
     pub fn clipped(&self) -> bool {
-        self.gyro
-            .iter()
-            .chain(&self.accel)
-            // One comparison for both ends, which are neighbours where the count wraps.
-            .any(|&counts| (counts as u16).wrapping_sub(i16::MAX as u16) <= 1)
+        // Both ends become the upper one. Written out, for it is asked of every sample.
+        let end = |counts: i16| counts ^ (counts >> 15) == i16::MAX;
+        let ([p, q, r], [x, y, z]) = (self.gyro, self.accel);
+        end(p) | end(q) | end(r) | end(x) | end(y) | end(z)
     }
 }
 

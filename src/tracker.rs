@@ -88,7 +88,7 @@ pub struct Tracker<M = Portable> {
     views: Views<M>,
     compass: Compass,
     use_compass: UseCompass,
-    calibration: Calibration,
+    calibration: Calibration<M>,
     phase: Phase,
     ticks: u32,
     counts: Tally,
@@ -196,6 +196,7 @@ impl<M: Multiply> Tracker<M> {
     /// Without, every field is passed over.
     pub fn set_magnetometer(&mut self, adjustment: Option<SensitivityAdjustment>) {
         self.compass = Compass::of(adjustment);
+        self.calibration.set_magnetometer(adjustment);
     }
 
     /// What was found by calibrations before, and kept.
@@ -240,6 +241,10 @@ impl<M: Multiply> Tracker<M> {
     /// One sample, with what the magnetometer has measured since the one before, if it has. `emit` is
     /// given the lines they lead to: mostly none, every tenth time one to three, and once a second
     /// up to eleven. Returns the binary frame of this sample, where one is asked for and due.
+    ///
+    /// What does not happen with every sample is in functions of its own, so that a board can keep the
+    /// rest where it is quick.
+    #[inline(always)]
     pub fn update(
         &mut self,
         raw: &RawSample,
@@ -247,40 +252,42 @@ impl<M: Multiply> Tracker<M> {
         health: &Health,
         emit: &mut impl FnMut(&Line),
     ) -> Option<Frame> {
+        self.count(raw);
+        self.counts.unclipped = self.counts.unclipped.saturating_add(1);
+        if raw.clipped() {
+            self.tell_of_clipping(raw, emit);
+        }
+        let taken = field.and_then(|field| self.take_field(field, emit));
+        self.track(raw, taken);
+        if self.measurement.is_some() {
+            self.measure(raw, emit);
+        }
+        if self.phase == Phase::Starting {
+            return None;
+        }
+        if self.bias_unknown || !self.estimators.bias_is_measured() {
+            self.tell_of_bias(emit);
+        }
+        if !self.every(self.shown_every()) {
+            return None;
+        }
         let counts = Counts {
             sample: *raw,
             field,
         };
-        self.count(raw);
-        self.tell_of_clipping(raw, emit);
-        let measured = self.compass.update(field);
-        if let Some(error) = measured.warning {
-            emit(&wire::text(format_args!("warning: {error}")));
-        }
-        let field = measured.result.and_then(Result::ok);
-        let field = field.filter(|_| self.follows_compass());
-        let field = field.map(|field| Field::new(self.calibration.field(field)));
-        if self.every(PERIOD_EVERY)
-            && let Some(timing) = self.timing
-        {
-            let period = Nanoseconds(timing.period_ns);
-            self.estimators.set_sample_period(period);
-        }
-        self.track(raw, field);
-        self.measure(raw, emit);
-        self.tell_of_bias(emit);
-        if self.phase == Phase::Starting {
-            return None;
-        }
         self.show(&counts, health, emit)
     }
 
+    #[inline(always)]
     fn count(&mut self, raw: &RawSample) {
         self.ticks = self.ticks.wrapping_add(1);
         if raw.fresh {
             self.counts.fresh_this_second += 1;
         } else {
             self.counts.repeated = self.counts.repeated.saturating_add(1);
+        }
+        if self.every(PERIOD_EVERY) {
+            self.follow_period();
         }
         if self.every(INFO_EVERY) {
             self.counts.fresh_last_second = self.counts.fresh_this_second;
@@ -289,15 +296,34 @@ impl<M: Multiply> Tracker<M> {
         }
     }
 
+    #[inline(never)]
+    fn follow_period(&mut self) {
+        if let Some(timing) = self.timing {
+            let period = Nanoseconds(timing.period_ns);
+            self.estimators.set_sample_period(period);
+        }
+    }
+
+    /// The field corrected, if it is to be followed.
+    #[inline(never)]
+    fn take_field(&mut self, raw: RawField, emit: &mut impl FnMut(&Line)) -> Option<Field> {
+        if let Some(error) = self.compass.update(raw) {
+            emit(&wire::text(format_args!("warning: {error}")));
+        }
+        if !self.follows_compass() {
+            return None;
+        }
+        raw.check().ok()?;
+        self.calibration.field(&raw)
+    }
+
     /// A sensor at the end of its range hides how far beyond it the truth is. It is told of when it
     /// begins; the estimators make good what they can once it is over.
+    #[cold]
+    #[inline(never)]
     fn tell_of_clipping(&mut self, raw: &RawSample, emit: &mut impl FnMut(&Line)) {
         let counts = &mut self.counts;
-        if !raw.clipped() {
-            counts.unclipped = counts.unclipped.saturating_add(1);
-            return;
-        }
-        if raw.fresh && (counts.clipped == 0 || counts.unclipped >= CLIPPED_AGAIN) {
+        if raw.fresh && (counts.clipped == 0 || counts.unclipped > CLIPPED_AGAIN) {
             emit(&wire::text(
                 "warning: the sensor is at the end of its range: turned or knocked too hard",
             ));
@@ -306,6 +332,7 @@ impl<M: Multiply> Tracker<M> {
         counts.unclipped = 0;
     }
 
+    #[inline(always)]
     fn every(&self, samples: u32) -> bool {
         self.ticks.is_multiple_of(samples)
     }
@@ -320,12 +347,15 @@ impl<M: Multiply> Tracker<M> {
                 self.estimators.update(raw.gyro, force, field);
             }
             Phase::Resetting => self.start(self.force(raw)),
-            Phase::Releveling => {
-                self.estimators.level(self.force(raw));
-                self.views.restart(self.estimators.orientation());
-                self.phase = Phase::Running;
-            }
+            Phase::Releveling => self.level(self.force(raw)),
         }
+        if matches!(self.mode, Mode::Flat | Mode::ThreeD) {
+            self.update_views(raw);
+        }
+    }
+
+    #[inline(never)]
+    fn update_views(&mut self, raw: &RawSample) {
         match self.mode {
             Mode::Flat => {
                 let (sample, bias) = (self.sample(raw), self.estimators.bias());
@@ -361,8 +391,19 @@ impl<M: Multiply> Tracker<M> {
     /// For `r` the course's firmware goes to the identity and leaves the rest to its filter, which
     /// is level again within a few samples. With a time constant of seconds the picture would lean
     /// for half a minute.
+    #[cold]
+    #[inline(never)]
     fn start(&mut self, force: Force) {
         self.estimators.reset(force);
+        self.restart_views();
+        self.phase = Phase::Running;
+    }
+
+    /// After a gap: the tilt at once, the yaw kept.
+    #[cold]
+    #[inline(never)]
+    fn level(&mut self, force: Force) {
+        self.estimators.level(force);
         self.restart_views();
         self.phase = Phase::Running;
     }
@@ -371,6 +412,7 @@ impl<M: Multiply> Tracker<M> {
         self.views.restart(self.estimators.orientation());
     }
 
+    #[inline(never)]
     fn measure(&mut self, raw: &RawSample, emit: &mut impl FnMut(&Line)) {
         let Some(measurement) = &mut self.measurement else {
             return;
@@ -409,8 +451,10 @@ impl<M: Multiply> Tracker<M> {
 
     /// A board that was never still streams all the same, and says now and then that it drifts; its
     /// first rest is told of.
+    #[cold]
+    #[inline(never)]
     fn tell_of_bias(&mut self, emit: &mut impl FnMut(&Line)) {
-        let unknown = self.phase != Phase::Starting && !self.estimators.bias_is_measured();
+        let unknown = !self.estimators.bias_is_measured();
         if self.bias_unknown && !unknown {
             emit(&wire::bias_measured(self.estimators.bias().rate()));
         }

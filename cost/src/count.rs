@@ -3,7 +3,6 @@
 use std::error::Error;
 use std::path::Path;
 
-use vrduino_cost_images::head::SAMPLES;
 use vrduino_emulator::board::{Board, Setup};
 use vrduino_emulator::cpu::timing::Cycles;
 use vrduino_emulator::image::Image;
@@ -80,7 +79,8 @@ pub fn count(image: &Path, subject: &Subject) -> Result<Count, Box<dyn Error>> {
         .image()
         .address_of("run::KEPT")
         .ok_or("the program keeps no orientations; build it again")?;
-    let bytes = board.peek(address, SAMPLES / KEPT_EVERY * 32);
+    let samples = calls.count as usize + 1;
+    let bytes = board.peek(address, samples / KEPT_EVERY * 32);
     let double = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().unwrap_or([0; 8]));
     let orientations = bytes
         .chunks_exact(32)
@@ -105,10 +105,11 @@ pub fn profile(image: &Path, subject: &Subject) -> Result<Vec<(String, f64)>, Bo
     let mut board = started(image, subject)?;
     board.profile();
     until(&mut board, ENDED, subject.name)?;
+    let updates = board.measure().calls.count as f64;
     let mut functions: Vec<_> = board
         .profiled()
         .into_iter()
-        .map(|(name, share)| (name, share.instructions as f64 / SAMPLES as f64))
+        .map(|(name, share)| (name, share.instructions as f64 / updates))
         .collect();
     functions.sort_by(|(_, one), (_, other)| other.total_cmp(one));
     Ok(functions)

@@ -20,14 +20,22 @@ pub struct Mode {
 }
 
 /// Every way of streaming that is measured.
-pub const MODES: [Mode; 2] = [
+pub const MODES: [Mode; 4] = [
     Mode {
-        label: "default estimator, a line every 10 ms",
+        label: "a line every 10 ms",
         typed: "",
     },
     Mode {
-        label: "the notes' filter, a line every 10 ms",
+        label: "a line every 10 ms, the notes' filter",
         typed: ":estimator notes\n",
+    },
+    Mode {
+        label: "a frame with every sample",
+        typed: ":stream binary\n",
+    },
+    Mode {
+        label: "the same, read by the host's frames",
+        typed: ":stream binary\n:lock usb\n",
     },
 ];
 

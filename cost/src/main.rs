@@ -57,7 +57,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let mut rows = rows(&OURS)?;
     if !arguments.ours {
-        rows.extend(self::rows(&PEERS)?);
+        let peers = self::rows(&PEERS).map_err(|error| {
+            format!("{error}\n`cargo cost --ours` does without the filters of others")
+        })?;
+        rows.extend(peers);
     }
     let yardstick = rows
         .iter()

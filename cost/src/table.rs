@@ -77,26 +77,25 @@ pub fn filters(out: &mut impl Write, rows: &[Row], yardstick: f64) -> io::Result
 pub fn firmware(out: &mut impl Write, runs: &[(Mode, Figures)]) -> io::Result<()> {
     writeln!(
         out,
-        "{:<52} {:>12} {:>8} {:>26} {:>8}",
-        "the tracker, time by the pessimistic end",
-        "CPU load",
-        "I2C",
-        "to USB: median, 99 %, most",
-        "stack"
+        "{:<38} {:>12} {:>5} {:>25} {:>25} {:>8}",
+        "the tracker; ms: median, 99 %, most", "CPU load", "I2C", "to USB", "to the host", "stack"
     )?;
+    let milliseconds = |times: Option<[f64; 3]>| {
+        times.map_or("-".to_owned(), |times| {
+            let [median, most, worst] = times.map(|seconds| seconds * 1e3);
+            format!("{median:.3}, {most:.3}, {worst:.3}")
+        })
+    };
     for (mode, figures) in runs {
         let (least, greatest) = figures.load;
-        let latency = figures.latency.map_or("-".to_owned(), |times| {
-            let [median, most, worst] = times.map(|seconds| seconds * 1e3);
-            format!("{median:.2}, {most:.2}, {worst:.2} ms")
-        });
         writeln!(
             out,
-            "{:<52} {:>12} {:>8} {:>26} {:>6} B",
+            "{:<38} {:>12} {:>5} {:>25} {:>25} {:>6} B",
             mode.label,
             format!("{:.1}-{:.1} %", least * 100.0, greatest * 100.0),
             format!("{:.0} %", figures.bus * 100.0),
-            latency,
+            milliseconds(figures.latency),
+            milliseconds(figures.to_host),
             figures.stack,
         )?;
     }
@@ -141,7 +140,8 @@ pub fn json(rows: &[Row], yardstick: f64, runs: &[(Mode, Figures)]) -> Value {
             ("seconds", (MEASURED_S as f64).into()),
             ("load", [least, greatest].into()),
             ("bus", figures.bus.into()),
-            ("latency_s", figures.latency.into()),
+            ("to_usb_s", figures.latency.into()),
+            ("to_host_s", figures.to_host.into()),
             ("stack_bytes", f64::from(figures.stack).into()),
             ("flash_bytes", (figures.flash as f64).into()),
             ("ram_bytes", figures.ram.map(|bytes| bytes as f64).into()),

@@ -12,7 +12,7 @@ use vrduino_emulator::time::MILLISECOND;
 /// Instructions of a whole update, bias and parameters included, up to 45° from level: always the same number.
 const NEAR_LEVEL: u64 = 215;
 /// Most that any input may cost.
-const WORST: u64 = 1_000;
+const WORST: u64 = 600;
 
 const IMAGE: Counted = Counted("fixed-complementary");
 

@@ -16,7 +16,7 @@ pub fn reciprocal<M: Multiply>(y: Q<M, 30>) -> Q<M, 30> {
     guess.plus(guess, missing)
 }
 
-/// 1/y for y from 1 to below 2: ½ to 1, and never 1 itself, for it is too little by 1e-9 to 5e-9 of itself.
+/// 1/y for y from 1 to below 2: ½ to 1, and never 1 itself, for it is too little by up to 6e-9 of itself.
 #[inline(always)]
 pub fn reciprocal_from_below<M: Multiply>(y: Q<M, 30>) -> Q<M, 31> {
     let upper = NonZeroU32::new(y.bits() as u32 >> 15 | 1 << 15).unwrap_or(NonZeroU32::MAX);

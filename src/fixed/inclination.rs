@@ -72,7 +72,7 @@ impl<M: Multiply> NearLevel<M> {
         }
     }
 
-    /// For tilts up to 45°, but for 1e-4° where the force is 1 g at ±16 g; none beyond, nor of a force of less
+    /// For tilts up to 45°, but for 0.02° where the force is 1 g at ±16 g; none beyond, nor of a force of less
     /// than 50 counts.
     #[inline(always)]
     pub fn little(&self, force: Vector<M, 11>) -> Option<Little<M>> {

@@ -5,29 +5,39 @@ use crate::calibration::Correction;
 use crate::calibration::record::{LENGTH, Record, RecordError};
 use crate::command::request::Piece;
 use crate::decimal::Decimal;
-use crate::fixed::fusion::Force;
+use crate::fixed::affine::{Accelerometer, Magnetometer};
+use crate::fixed::fusion::{Field, Force};
+use crate::fixed::multiply::Multiply;
+use crate::sensor::magnetometer::{RawField, Resolution, SensitivityAdjustment};
 use crate::sensor::{Ranges, RawSample, Sample};
-use crate::units::MagneticField;
 use crate::wire::{self, Line};
 
 /// The record in use, and the one that is coming in.
 #[derive(Clone, Debug)]
-pub struct Calibration {
+pub struct Calibration<M> {
     ranges: Ranges,
     record: Record,
     correction: Correction<f32>,
+    /// The same for counts; none where nothing is known, or where it is more than that holds.
+    accelerometer: Option<Accelerometer<M>>,
+    /// None while there is no magnetometer.
+    adjustment: Option<SensitivityAdjustment>,
+    magnetometer: Option<Magnetometer<M>>,
     incoming: [u8; LENGTH],
     /// The record has changed and nobody has taken it yet.
     to_keep: bool,
 }
 
-impl Calibration {
+impl<M: Multiply> Calibration<M> {
     /// Nothing known of a sensor set to these ranges.
     pub fn new(ranges: Ranges) -> Self {
         Self {
             ranges,
             record: Record::default(),
             correction: Correction::none(),
+            accelerometer: None,
+            adjustment: None,
+            magnetometer: None,
             incoming: [0; LENGTH],
             to_keep: false,
         }
@@ -37,6 +47,25 @@ impl Calibration {
     pub fn set(&mut self, record: &Record) {
         self.record = *record;
         self.correction = record.correction();
+        self.accelerometer = match record.accelerometer {
+            Some(_) => Accelerometer::new(&self.correction.accelerometer, self.ranges.accel),
+            None => None,
+        };
+        self.prepare_magnetometer();
+    }
+
+    /// How sensitive the magnetometer is, if there is one.
+    pub fn set_magnetometer(&mut self, adjustment: Option<SensitivityAdjustment>) {
+        self.adjustment = adjustment;
+        self.prepare_magnetometer();
+    }
+
+    fn prepare_magnetometer(&mut self) {
+        let microtesla_per_count = Resolution::Bits16.microtesla_per_count() as f32;
+        self.magnetometer = self.adjustment.and_then(|adjustment| {
+            let sensitivity = adjustment.factors() * microtesla_per_count;
+            Magnetometer::new(&self.correction.magnetometer, sensitivity)
+        });
     }
 
     /// The record, once after each change.
@@ -63,20 +92,33 @@ impl Calibration {
 
     #[inline(never)]
     fn corrected(&self, counts: [i16; 3]) -> Force {
+        if let Some(accelerometer) = &self.accelerometer {
+            return accelerometer.force(counts);
+        }
         let raw = RawSample {
             accel: counts,
             ..RawSample::default()
         };
-        let sample = self.correction.sample(self.ranges.sample(&raw));
-        Force::new(sample.force, self.ranges.accel)
+        Force::new(
+            self.sample(self.ranges.sample(&raw)).force,
+            self.ranges.accel,
+        )
     }
 
-    /// The field without the board's iron.
-    pub fn field(&self, field: MagneticField<f32>) -> MagneticField<f32> {
-        if self.record.magnetometer.is_none() {
-            return field;
+    /// The field without the board's iron, body frame; none without a magnetometer.
+    pub fn field(&self, raw: &RawField) -> Option<Field> {
+        let counts = match raw.resolution {
+            Resolution::Bits16 => raw.counts,
+            // A count of these is four of the others.
+            Resolution::Bits14 => raw.counts.map(|count| count.saturating_mul(4)),
+        };
+        match &self.magnetometer {
+            Some(magnetometer) => Some(magnetometer.field(counts)),
+            None => {
+                let field = raw.field(self.adjustment?).ok()?;
+                Some(Field::new(self.correction.field(field)))
+            }
         }
-        self.correction.field(field)
     }
 
     /// Whether the board's iron is known.

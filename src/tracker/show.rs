@@ -11,6 +11,17 @@ use crate::wire::provenance::Compass;
 use crate::wire::{self, Line, Q30, Status, Tag};
 
 impl<M: Multiply> Tracker<M> {
+    /// Samples from one time that something is shown to the next.
+    #[inline(always)]
+    pub(super) fn shown_every(&self) -> u32 {
+        match self.mode {
+            Mode::Info => INFO_EVERY,
+            _ => u32::from(self.stream.every()),
+        }
+    }
+
+    /// What is due.
+    #[inline(never)]
     pub(super) fn show(
         &mut self,
         counts: &Counts,
@@ -19,12 +30,7 @@ impl<M: Multiply> Tracker<M> {
     ) -> Option<Frame> {
         let raw = &counts.sample;
         if self.mode == Mode::Info {
-            if self.every(INFO_EVERY) {
-                self.show_info(health, emit);
-            }
-            return None;
-        }
-        if !self.every(u32::from(self.stream.every())) {
+            self.show_info(health, emit);
             return None;
         }
         match self.mode {
@@ -97,7 +103,7 @@ impl<M: Multiply> Tracker<M> {
         emit(&wire::repeated(self.counts.repeated));
         emit(&wire::overruns(health.overruns));
         emit(&wire::clipped(self.counts.clipped));
-        match self.compass.last() {
+        match self.compass.recent() {
             Some(Ok(field)) => emit(&wire::field(field, self.compass.per_second())),
             Some(Err(error)) => emit(&wire::text(format_args!("Field: {error}"))),
             None => emit(&wire::no_field()),

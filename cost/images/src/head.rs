@@ -7,7 +7,10 @@ use crate::filter::{BIAS_PARTS, PERIOD_S};
 use vrduino::sensor::RawSample;
 
 /// How many samples there are.
-pub const SAMPLES: usize = 1000;
+pub const SAMPLES: usize = 3000;
+
+/// How many of them a filter takes that does the same with each.
+pub const FEW: usize = 1000;
 
 /// How many samples there are from one of the magnetometer to the next: 100 a second.
 pub const FIELD_EVERY: usize = 10;

@@ -12,7 +12,7 @@
 //! | `run` | runs a filter on the chip |
 
 #![no_std]
-#![deny(unsafe_code)]
+#![forbid(unsafe_code)]
 
 pub mod head;
 

@@ -4,6 +4,7 @@ use crate::filter::{BIAS_DPS, BIAS_PARTS, Filter, PERIOD_S, RANGES};
 use crate::head::{Counts, FIELD_EVERY};
 use vrduino::calibration::GyroBias;
 use vrduino::fixed::complementary::{self as fixed, Bias, Nanoseconds};
+use vrduino::fixed::fusion::{self, Field};
 use vrduino::fixed::multiply::Multiply;
 use vrduino::fusion::{Fusion, Parameters, Rates};
 use vrduino::nalgebra::{RealField, UnitQuaternion, Vector3, convert, try_convert};
@@ -95,6 +96,37 @@ impl<T: RealField + Copy, const COMPASS: bool> Filter for Default<T, COMPASS> {
 
     fn orientation(&self) -> [f64; 4] {
         parts(self.0.orientation())
+    }
+}
+
+/// The default estimator in fixed point; with the magnetometer if `COMPASS`.
+pub struct DefaultInFixedPoint<M, const COMPASS: bool>(fusion::Fusion<M>);
+
+impl<M: Multiply, const COMPASS: bool> Filter for DefaultInFixedPoint<M, COMPASS> {
+    fn start() -> Self {
+        let rates = fusion::Rates {
+            sample: Nanoseconds(1_000_000),
+            field: Nanoseconds(1_000_000 * FIELD_EVERY as u32),
+            ranges: RANGES,
+        };
+        Self(fusion::Fusion::with(&Parameters::default(), rates))
+    }
+
+    #[inline(always)]
+    fn update(&mut self, counts: &Counts) {
+        let field = (COMPASS && counts.field_is_new).then(|| {
+            // 0.15 µT are 24576/5 of its parts; from the magnetometer's axes to the body's.
+            let [x, y, z] = counts.field;
+            let parts = |count: i16| i32::from(count) * 24_576 / 5;
+            Field::from_parts_of_microtesla([parts(y), parts(x), -parts(z)])
+        });
+        self.0.update(&counts.sample, field);
+    }
+
+    fn orientation(&self) -> [f64; 4] {
+        self.0
+            .bits()
+            .map(|bits| f64::from(bits) / f64::from(1 << 30))
     }
 }
 

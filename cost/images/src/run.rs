@@ -3,8 +3,6 @@
 //! A program made by [`filters!`](crate::filters) waits at the end of `main`. Whoever counts makes it go on at the
 //! function `run` of a filter's module, counts the calls of `update` beside it, and waits for `STATE`.
 
-#![allow(unsafe_code, reason = "registers")]
-
 use crate::filter::Filter;
 use crate::head::{Counts, SAMPLES};
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -23,22 +21,6 @@ static KEPT: [AtomicU32; 8 * SAMPLES / KEPT_EVERY] =
 #[used]
 static STATE: AtomicU32 = AtomicU32::new(0);
 
-/// Switches the watchdog off (K20 manual, WDOG).
-///
-/// # Safety
-///
-/// To be called once, early enough, before memory is initialised; it uses none.
-pub unsafe fn without_watchdog() {
-    const UNLOCK: *mut u16 = 0x4005_200E as *mut u16;
-    const STCTRLH: *mut u16 = 0x4005_2000 as *mut u16;
-    // SAFETY: a register of the chip.
-    unsafe { UNLOCK.write_volatile(0xC520) };
-    // SAFETY: as above.
-    unsafe { UNLOCK.write_volatile(0xD928) };
-    // SAFETY: as above.
-    unsafe { STCTRLH.write_volatile(0x01D2) };
-}
-
 /// Goes to 72 MHz and waits to be sent elsewhere.
 pub fn wait() -> ! {
     if let Some(chip) = Peripherals::take() {
@@ -51,10 +33,11 @@ pub fn wait() -> ! {
 }
 
 /// The first sample by itself, all others by `update`.
-pub fn run<F: Filter>(input: &[Counts; SAMPLES], update: fn(&mut F, &Counts)) -> ! {
-    let [first, others @ ..] = input;
-    let mut filter = F::start();
-    filter.update(first);
+pub fn run<F: Filter>(input: &[Counts], update: fn(&mut F, &Counts)) -> ! {
+    let (mut filter, mut others) = (F::start(), input);
+    if let Some(first) = others.split_off_first() {
+        filter.update(first);
+    }
     let mut kept = KEPT.chunks_exact(8);
     for (number, counts) in others.iter().enumerate() {
         update(&mut filter, counts);
@@ -73,10 +56,11 @@ pub fn run<F: Filter>(input: &[Counts; SAMPLES], update: fn(&mut F, &Counts)) ->
     }
 }
 
-/// A program that can run any of these filters: `name: Type, on INPUT;`, with attributes for where its update lies.
+/// A program that can run any of these filters: `name: Type, on so many of INPUT;`, with attributes for where its update
+/// lies.
 #[macro_export]
 macro_rules! filters {
-    ($($(#[$attribute:meta])* $name:ident: $filter:ty, on $input:path;)*) => {
+    ($($(#[$attribute:meta])* $name:ident: $filter:ty, on $samples:ident of $input:ident;)*) => {
         $(
             #[allow(unused_imports, reason = "the types are named from outside")]
             mod $name {
@@ -90,7 +74,7 @@ macro_rules! filters {
 
                 #[inline(never)]
                 pub extern "C" fn run() -> ! {
-                    $crate::run::run(&$input, update)
+                    $crate::run::run(&$input[..$samples], update)
                 }
             }
         )*
@@ -98,13 +82,6 @@ macro_rules! filters {
         /// Nothing calls them from here.
         #[used]
         static FILTERS: &[extern "C" fn() -> !] = &[$($name::run),*];
-
-        // SAFETY: the start-up code calls this once, before memory is initialised.
-        #[unsafe(no_mangle)]
-        extern "C" fn __pre_init() {
-            // SAFETY: as above.
-            unsafe { $crate::run::without_watchdog() };
-        }
 
         #[cortex_m_rt::entry]
         fn main() -> ! {

@@ -6,6 +6,9 @@
 #![no_std]
 #![no_main]
 
+#[path = "../../images/src/watchdog.rs"]
+mod watchdog;
+
 use ahrs::{Madgwick, Mahony};
 use cortex_m_rt as _;
 use fusion_ahrs::{Ahrs, AhrsSettings, Convention, Vector};
@@ -14,7 +17,7 @@ use nalgebra::Vector3;
 use panic_halt as _;
 use vqf_rs::VQF;
 use vrduino_cost_images::filter::{Filter, PERIOD_S};
-use vrduino_cost_images::head::{Counts, HEAD_Z_UP};
+use vrduino_cost_images::head::{Counts, FEW, HEAD_Z_UP};
 
 const DPS_PER_COUNT: f32 = 2000.0 / 32768.0;
 const G_PER_COUNT: f32 = 2.0 / 32768.0;
@@ -72,7 +75,12 @@ impl<F: Gains, const COMPASS: bool> Filter for OfAhrs<F, COMPASS> {
     fn orientation(&self) -> [f64; 4] {
         let [w, x, y, z] = self.1.map(f64::from);
         let half = core::f64::consts::FRAC_1_SQRT_2;
-        [half * (w - z), half * (x - y), half * (y + x), half * (z + w)]
+        [
+            half * (w - z),
+            half * (x - y),
+            half * (y + x),
+            half * (z + w),
+        ]
     }
 }
 
@@ -118,8 +126,8 @@ impl<const COMPASS: bool> Filter for Vqf<COMPASS> {
 
     #[inline]
     fn update(&mut self, counts: &Counts) {
-        let field = (COMPASS && counts.field_is_new)
-            .then(|| scaled(counts.field, MICROTESLA_PER_COUNT));
+        let field =
+            (COMPASS && counts.field_is_new).then(|| scaled(counts.field, MICROTESLA_PER_COUNT));
         self.0.update(
             scaled(counts.sample.gyro, RADIANS_PER_COUNT),
             scaled(counts.sample.accel, G_PER_COUNT * STANDARD_GRAVITY),
@@ -128,18 +136,22 @@ impl<const COMPASS: bool> Filter for Vqf<COMPASS> {
     }
 
     fn orientation(&self) -> [f64; 4] {
-        let q = if COMPASS { self.0.quat_9d() } else { self.0.quat_6d() };
+        let q = if COMPASS {
+            self.0.quat_9d()
+        } else {
+            self.0.quat_6d()
+        };
         [q.0, q.1, q.2, q.3].map(f64::from)
     }
 }
 
 vrduino_cost_images::filters! {
-    madgwick_6: OfAhrs<Madgwick<f32>, false>, on HEAD_Z_UP;
-    madgwick_9: OfAhrs<Madgwick<f32>, true>, on HEAD_Z_UP;
-    mahony_6: OfAhrs<Mahony<f32>, false>, on HEAD_Z_UP;
-    mahony_9: OfAhrs<Mahony<f32>, true>, on HEAD_Z_UP;
-    xio_fusion_6: XioFusion<false>, on HEAD_Z_UP;
-    xio_fusion_9: XioFusion<true>, on HEAD_Z_UP;
-    vqf_6: Vqf<false>, on HEAD_Z_UP;
-    vqf_9: Vqf<true>, on HEAD_Z_UP;
+    madgwick_6: OfAhrs<Madgwick<f32>, false>, on FEW of HEAD_Z_UP;
+    madgwick_9: OfAhrs<Madgwick<f32>, true>, on FEW of HEAD_Z_UP;
+    mahony_6: OfAhrs<Mahony<f32>, false>, on FEW of HEAD_Z_UP;
+    mahony_9: OfAhrs<Mahony<f32>, true>, on FEW of HEAD_Z_UP;
+    xio_fusion_6: XioFusion<false>, on FEW of HEAD_Z_UP;
+    xio_fusion_9: XioFusion<true>, on FEW of HEAD_Z_UP;
+    vqf_6: Vqf<false>, on FEW of HEAD_Z_UP;
+    vqf_9: Vqf<true>, on FEW of HEAD_Z_UP;
 }
