@@ -105,7 +105,7 @@ fn the_verdict_on_the_bias_says_how_it_is_known() {
         bench.ask(":bias"),
         "OK bias 0.000 0.488 0.000 deg/s, still 1 s, residual 0.0 deg/min\n"
     );
-    bench.feed(2000, handled);
+    bench.feed(2100, handled);
     let moving = bench.ask(":bias");
     assert!(
         moving.ends_with("deg/s, moving, at rest 2 s ago\n"),
