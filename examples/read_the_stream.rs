@@ -1,21 +1,25 @@
 //! What does the board say? Reads the stream as a PC does: orientations in, angles out.
 //!
 //! Run with `cargo emulate --seconds 8 | cargo run --example read_the_stream`, or with a board:
-//! `cargo run --example read_the_stream < /dev/ttyACM0`. Expect ten lines of angles a second. If
+//! `cargo run --example read_the_stream < /dev/ttyACM0`. Expect ten lines of angles a second, however the
+//! board was told to send them (`cargo emulate --seconds 8 --type $':stream binary\n@1'`). If
 //! nothing comes, look at the lines that begin with `error:`; they are passed on, as is every other
-//! line that is not an orientation.
+//! line that is not an orientation. What was lost on the way is told at the end, on standard error.
 //!
 //! It is made to be copied into a host: a serial line may lose bytes or begin in the middle of a
 //! line, so nothing that comes stops it or shows as an angle that is none.
 
-use std::io::{self, BufRead, Write};
+use std::io::{self, Read, Write};
+use std::time::Duration;
 
 use vrduino::nalgebra::{UnitQuaternion, Vector3};
-use vrduino::view;
+use vrduino::wire::decoder::{Decoder, Event, Losses, Received};
 
-/// No line of the stream is as long; what is gets cut into pieces, lest a line without end fill the
-/// memory.
-const LONGEST: u64 = 256;
+/// Between two lines of angles.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// From one orientation to the next where they come without a time.
+const USUAL: Duration = Duration::from_millis(10);
 
 fn main() -> io::Result<()> {
     if std::env::args()
@@ -28,39 +32,71 @@ fn main() -> io::Result<()> {
             .try_for_each(|line| writeln!(io::stdout(), "{}", line.trim_start()));
     }
     match read(&mut io::stdin().lock(), &mut io::stdout().lock()) {
+        Ok(losses) => writeln!(io::stderr(), "{}", lost(&losses)),
         // Who reads our output has seen enough.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        outcome => outcome,
+        Err(error) => Err(error),
     }
 }
 
-fn read(stream: &mut impl BufRead, out: &mut impl Write) -> io::Result<()> {
-    let mut count = 0;
-    let mut bytes = Vec::new();
-    while io::Read::take(&mut *stream, LONGEST).read_until(b'\n', &mut bytes)? > 0 {
-        // A byte that is no text is shown as such, and makes of its line no orientation.
-        let line = String::from_utf8_lossy(&bytes);
-        let line = line.trim_end();
-        if let Some(orientation) = orientation(line) {
-            count += 1;
-            if count % 10 == 0 {
-                writeln!(out, "{}", described(orientation))?;
+fn read(stream: &mut impl Read, out: &mut impl Write) -> io::Result<Losses> {
+    let mut decoder = Decoder::new();
+    let mut shown = Shown::default();
+    let mut bytes = [0; 4096];
+    loop {
+        let count = match stream.read(&mut bytes) {
+            Ok(0) => return Ok(*decoder.losses()),
+            Ok(count) => count,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error),
+        };
+        for &byte in &bytes[..count] {
+            match decoder.push(byte) {
+                Some(Event::Orientation(received)) if shown.is_due(&received) => {
+                    writeln!(out, "{}", described(received.orientation))?;
+                }
+                Some(Event::Text(line)) => writeln!(out, "{line}")?,
+                _ => {}
             }
-        } else {
-            writeln!(out, "{line}")?;
         }
-        bytes.clear();
     }
-    Ok(())
 }
 
-/// The orientation, body to world, in a `QC w x y z` line. None if it is no such line, or one that
-/// is no rotation: cut short, all zero, not a number. Three decimals have rounded it, so
-/// `from_stream` makes it of unit length again (course notes, section 5.4).
-fn orientation(line: &str) -> Option<UnitQuaternion<f64>> {
-    let numbers = line.strip_prefix("QC ")?.split(' ').map(str::parse);
-    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().ok()?;
-    view::from_stream(numbers.try_into().ok()?).ok()
+/// How long ago the last line of angles was, by the board's clock.
+#[derive(Default)]
+struct Shown {
+    ago: Duration,
+    micros: Option<u32>,
+}
+
+impl Shown {
+    fn is_due(&mut self, received: &Received) -> bool {
+        let micros = received.stamp.map(|stamp| stamp.micros);
+        let since = match (self.micros, micros) {
+            (Some(before), Some(now)) => Duration::from_micros(now.wrapping_sub(before).into()),
+            _ => USUAL,
+        };
+        self.micros = micros;
+        self.ago += since;
+        let due = self.ago >= PAUSE;
+        if due {
+            self.ago = Duration::ZERO;
+        }
+        due
+    }
+}
+
+fn lost(losses: &Losses) -> String {
+    let Losses {
+        bytes,
+        damaged,
+        malformed,
+        missing,
+        ..
+    } = losses;
+    format!(
+        "lost: {bytes} bytes, {damaged} with a wrong checksum, {malformed} malformed, {missing} missing"
+    )
 }
 
 /// Where the board's own axes point: −z is where a head in front of it looks.

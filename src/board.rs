@@ -1,6 +1,6 @@
 //! The VRduino board: everything that knows the chip.
 //!
-//! Priorities, most urgent first: sampling (PIT0 and I2C0, which never interrupt one another), USB,
+//! Priorities, most urgent first: sampling (PIT0, I2C0 and DMA0, which never interrupt one another), USB,
 //! and the main program.
 
 #![allow(
@@ -14,6 +14,8 @@ pub mod calibration;
 
 pub mod clock;
 
+pub mod dma;
+
 pub mod i2c;
 
 pub mod imu;
@@ -22,7 +24,11 @@ pub mod led;
 
 pub mod loader;
 
+pub mod multiply;
+
 pub mod store;
+
+pub mod timer;
 
 pub mod usb;
 
@@ -32,7 +38,7 @@ use cortex_m::peripheral::NVIC;
 use mk20dx_hal::pac;
 use vrduino::calibration::record::Record;
 use vrduino::imu::magnetometer::MagnetometerError;
-use vrduino::sensor::RawSample;
+use vrduino::sampling::Lock;
 use vrduino::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use vrduino::tracker::Health;
 use vrduino::wire;
@@ -40,6 +46,8 @@ use vrduino::wire;
 use breadcrumb::Stage;
 use calibration::Calibration;
 use clock::Time;
+use dma::Dma;
+use i2c::I2c;
 use imu::Imu;
 use led::Led;
 use loader::Loader;
@@ -53,7 +61,8 @@ pub use imu::Fault;
 pub struct Board {
     /// The serial port.
     pub usb: Usb,
-    imu: Imu,
+    /// The sensor.
+    pub imu: Imu,
     calibration: Calibration,
     led: Led,
     loader: Loader,
@@ -64,6 +73,7 @@ pub struct Board {
     /// Why the board runs on six axes, if it does.
     no_compass: Option<MagnetometerError<i2c::Error>>,
     introduced: bool,
+    lock: Lock,
 }
 
 impl Board {
@@ -73,7 +83,8 @@ impl Board {
         let chip = pac::Peripherals::take().expect("the board is taken once");
         let last_life = breadcrumb::LastLife::read(&chip.rcm);
         breadcrumb::mark(Stage::Clocks);
-        let clocks = clock::start(core.DCB, core.DWT, chip.mcg, chip.osc, &chip.sim);
+        clock::start(core.DCB, core.DWT, chip.mcg, chip.osc, &chip.sim);
+        let alarm = timer::start(chip.pit, &chip.sim);
         let mut watchdog = Watchdog::new(chip.wdog);
         // Before USB and sampling: on a new chip it takes a while. What hung once is not tried again.
         let hung = last_life.is_some_and(|life| life.was_at(Stage::Partitioning));
@@ -83,9 +94,8 @@ impl Board {
         let led = Led::new(chip.portc, chip.ptc, &chip.sim);
         breadcrumb::mark(Stage::UsbStart);
         let usb = Usb::new(chip.usb0, &chip.sim);
-        let imu = Imu::new(
-            chip.i2c0, chip.portb, chip.ptb, chip.pit, &chip.sim, &clocks,
-        );
+        let bus = I2c::new(chip.i2c0, chip.portb, chip.ptb, &chip.sim);
+        let imu = Imu::new(bus, Dma::new(chip.dma, chip.dmamux, &chip.sim), alarm);
         Board {
             usb,
             imu,
@@ -98,6 +108,7 @@ impl Board {
             fault: None,
             no_compass: None,
             introduced: false,
+            lock: Lock::default(),
         }
     }
 
@@ -130,18 +141,32 @@ impl Board {
         Ok(compass.ok())
     }
 
-    /// Sleeps until the next millisecond's sample is there, every tenth or so with a field.
+    /// Sleeps until the sensor's next sample is there, in [`Imu::sample`] and [`Imu::timing`]. Returns what the
+    /// magnetometer has measured since the one before, every tenth time or so.
     ///
     /// A burst that failed is bridged by the sample before it, marked as not fresh; a sensor that
     /// fails for longer is a fault. A magnetometer that fails is none: tracking goes on without.
-    pub fn next_sample(&mut self) -> Result<(RawSample, Option<RawField>), Fault> {
+    #[inline(never)] // in SRAM, see memory.x
+    pub fn next_sample(&mut self) -> Result<Option<RawField>, Fault> {
         breadcrumb::mark(Stage::Sampling);
-        let (sample, field) = self.imu.next_sample()?;
-        if let Some(Err(loss)) = field {
-            self.no_compass = Some(MagnetometerError::Lost(loss));
-            self.tell_of_compass();
+        match self.imu.next_sample()? {
+            None => Ok(None),
+            Some(Ok(field)) => Ok(Some(field)),
+            Some(Err(loss)) => {
+                self.no_compass = Some(MagnetometerError::Lost(loss));
+                self.tell_of_compass();
+                Ok(None)
+            }
         }
-        Ok((sample, field.and_then(Result::ok)))
+    }
+
+    /// Chooses what the sensor is read by, from the next sample on.
+    pub fn lock_on(&mut self, lock: Lock) {
+        if lock != self.lock {
+            self.lock = lock;
+            self.usb.follow_frames(lock == Lock::Usb);
+            imu::lock_on(lock);
+        }
     }
 
     /// Counters for the INFO lines.
@@ -149,18 +174,28 @@ impl Board {
         let counts = imu::counts();
         Health {
             dropped_lines: usb::dropped_lines(),
-            overruns: counts.overruns,
+            overruns: counts.lost,
             skipped_fields: counts.skipped_fields,
         }
     }
 
     /// Ends a turn of the main loop that went well.
+    #[inline(never)] // in SRAM, see memory.x
     pub fn end_of_turn(&mut self) {
         self.watchdog.feed();
-        self.go_on_keeping();
-        self.led.heartbeat(clock::milliseconds());
-        self.loader
-            .serve(self.usb.loader_asked(), clock::milliseconds());
+        // What is being kept goes on with each; the rest is for eyes and hands, for which one in four is enough.
+        if self.calibration.is_busy() {
+            self.go_on_keeping();
+        }
+        let now = clock::milliseconds();
+        if now.is_multiple_of(4) {
+            self.look_around(now);
+        }
+    }
+
+    fn look_around(&mut self, now: u32) {
+        self.led.heartbeat(now);
+        self.loader.serve(self.usb.loader_asked(), now);
         if self.usb.was_opened() {
             self.introduce();
         }
@@ -194,6 +229,7 @@ impl Board {
         }
     }
 
+    #[cold]
     fn go_on_keeping(&mut self) {
         if let Some(end) = self.calibration.serve(clock::milliseconds()) {
             self.usb.send(&end);
@@ -216,6 +252,7 @@ impl Board {
     }
 
     /// Says why there is no compass, if there is none.
+    #[cold]
     fn tell_of_compass(&mut self) {
         if let Some(error) = self.no_compass {
             self.usb.send(&wire::magnetometer_failed(&error));

@@ -3,10 +3,12 @@
 //!
 //! A line that begins with anything else is passed over to its end: a terminal that nobody has told
 //! otherwise echoes what the board streams, and the digits in it would press keys without end. No line
-//! of the stream begins with a key or a colon.
+//! of the stream begins with a key or a colon. Frames hold any byte; what begins with a zero, or with the `^@`
+//! that a terminal makes of it, is passed over until nothing has come for a while.
 
 mod number;
 pub mod request;
+mod setting;
 
 use heapless::String;
 use request::{Refusal, Request};
@@ -62,6 +64,8 @@ enum Place {
     Request,
     /// A line that is none of ours, or has been refused; so many bytes may still follow.
     Foreign(u8),
+    /// Frames: all of it, newlines included.
+    Frames,
 }
 
 /// Turns bytes from the host into commands, in whatever chunks they come.
@@ -87,7 +91,7 @@ impl Parser {
         self.silence = self.silence.saturating_add(1);
         let patience = match self.place {
             Place::Outside => return,
-            Place::Foreign(_) => SILENCE,
+            Place::Foreign(_) | Place::Frames => SILENCE,
             Place::Request => LONG_SILENCE,
         };
         if self.silence >= patience {
@@ -101,6 +105,11 @@ impl Parser {
         self.silence = 0;
         let end_of_line = matches!(byte, b'\n' | b'\r');
         match self.place {
+            _ if byte == 0 => {
+                self.place = Place::Frames;
+                self.request.clear();
+            }
+            Place::Frames => {}
             Place::Outside => return self.key(byte),
             Place::Request if end_of_line => {
                 self.place = Place::Outside;
@@ -147,6 +156,10 @@ impl Parser {
                 return None;
             }
             b'\n' | b'\r' | b' ' => return None,
+            b'^' => {
+                self.place = Place::Frames;
+                return None;
+            }
             _ => {
                 self.place = Place::Foreign(LONGEST_LINE);
                 return None;

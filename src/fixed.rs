@@ -24,13 +24,13 @@
 //! |---|---|---|
 //! | orientation | Q62, its upper half Q30 | ±1 |
 //! | gyro less bias, counts | Q15 | ±1½ · 2¹⁵ |
-//! | half angle of a sample, rad | Q32 | ±0.19 an axis |
-//! | force, counts | Q15, Q12 in the world | ±2¹⁵ an axis |
+//! | tangent of half a sample's angle | Q32, and as much carried over | ±0.19 an axis |
+//! | force, counts | Q16, Q11 in the world | ±2¹⁵ an axis |
 //! | (1 − α)/2 | Q35 | 0 to ½; below 2⁻⁴ in 32 bits |
-//! | half angle of levelling per tangent | Q34 | 0 to 2⁻⁴ |
+//! | tangent of half the levelling turn per tangent of the tilt | Q35 | 0 to 2⁻⁴ |
 //!
-//! On the common path, up to 45° of tilt error and α above 7/8, no instruction depends on the
-//! values. `vrduino-cost` counts them on the chip.
+//! On the common path, up to 45° of tilt error, α above 7/8 and up to 2.5° of half a sample's angle, no instruction
+//! depends on the values. `cargo cost` counts them on the chip.
 
 pub mod multiply;
 

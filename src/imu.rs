@@ -8,8 +8,8 @@
 //! comes back silently at ±250 °/s and ±2 g. So the registers that give counts their meaning are
 //! read back, after set-up and whenever [`verify`](crate::imu::verify) is called.
 //!
-//! The INT pin is not wired on a VRduino. Samples are fetched on a timer, and the status register
-//! that comes with them says whether they are new.
+//! The INT pin is not wired on a VRduino. Samples are fetched by a timer that follows the sensor
+//! ([`sampling`](crate::sampling)), and the status register that comes with them says whether they are new.
 
 use crate::sensor::{AccelRange, BURST_LEN, BURST_START, GyroRange, Ranges, RawSample};
 use core::fmt;

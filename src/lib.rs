@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! counts ──► sensor ──► calibration ──► orientation ──► wire ──► (USB) ──► viewer
-//! i16×6      units      corrected       quaternion      line               picture
+//! i16×6      units      corrected       quaternion      bytes              picture
 //! ```
 //!
 //! Every arrow is one function call, and no module knows its right-hand neighbour.
@@ -72,6 +72,9 @@ pub mod sensor;
 /// Finding the sensor on its bus, setting it up, and proving that it took the settings.
 pub mod imu;
 
+/// When to read the sensor, and when what was read was measured.
+pub mod sampling;
+
 /// Is the board still? If so, what does the gyro read when nothing turns?
 pub mod calibration;
 
@@ -90,13 +93,13 @@ pub mod virtual_gyro;
 /// Numbers as people write them.
 pub mod decimal;
 
-/// Lines of text for the host, to the byte.
+/// Lines and frames for the host, to the byte, and how a host reads them.
 pub mod wire;
 
 /// Keys from the host.
 pub mod command;
 
-/// The path of a sample, from counts to lines, called once per millisecond.
+/// The path of a sample, from counts to lines, called once per sample.
 pub mod tracker;
 
 /// What a viewer makes of the quaternion: a view matrix for each eye, and a projection.

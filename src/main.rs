@@ -1,10 +1,11 @@
-//! The program on the board: a sample every millisecond, an orientation to the host a hundred times
+//! The program on the board: a thousand samples a second, an orientation to the host a hundred times
 //! a second.
 //!
-//! A timer starts each burst from the sensor and interrupts carry it in; the filter runs here, and
-//! here the core sleeps when there is nothing to do. USB has an interrupt of its own, below the
-//! sensor's and above the filter, so neither a slow host nor a busy filter delays a sample. The
-//! watchdog is fed only after a sample has come in and gone through the filter.
+//! An alarm starts each burst just behind the sensor's data-ready, and DMA carries it in; the filter runs
+//! here, and here the core sleeps when there is nothing to do. A line goes to the USB controller in the turn
+//! that makes it. USB has an interrupt of its own, below the sensor's and above the filter, so neither a
+//! slow host nor a busy filter delays a sample. The watchdog is fed only after a sample has come in and
+//! gone through the filter.
 
 #![no_std]
 #![no_main]
@@ -15,8 +16,10 @@ mod board;
 use core::convert::Infallible;
 
 use board::breadcrumb::{self, Stage};
+use board::multiply::Instructions;
 use board::{Board, Fault};
 use panic_halt as _; // a panic stops the core; the watchdog restarts it and the breadcrumb tells
+use vrduino::command::Command;
 use vrduino::imu::RANGES;
 use vrduino::tracker::Tracker;
 
@@ -26,7 +29,7 @@ const RETRY_MS: u32 = 1000;
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let mut board = Board::take();
-    let mut tracker = Tracker::new(RANGES);
+    let mut tracker = Tracker::<Instructions>::with(RANGES);
     if let Some(record) = board.load_calibration() {
         tracker.set_calibration(&record);
     }
@@ -38,23 +41,46 @@ fn main() -> ! {
 }
 
 /// Tracks until the sensor is lost.
-///
-/// One turn a millisecond; a turn that comes late finds its sample in a queue and catches up.
-fn track(board: &mut Board, tracker: &mut Tracker) -> Result<Infallible, Fault> {
+fn track(board: &mut Board, tracker: &mut Tracker<Instructions>) -> Result<Infallible, Fault> {
     let adjustment = board.start_imu()?;
     tracker.set_magnetometer(adjustment);
     tracker.resume();
     loop {
-        let (sample, field) = board.next_sample()?;
-        while let Some(command) = board.usb.command() {
-            tracker.command(command, &mut |line| board.usb.send(line));
-        }
-        if let Some(record) = tracker.take_calibration_to_keep() {
-            board.keep_calibration(&record);
-        }
-        breadcrumb::mark(Stage::Filter);
-        let health = board.health();
-        tracker.update(&sample, field, &health, &mut |line| board.usb.send(line));
-        board.end_of_turn();
+        turn(board, tracker)?;
+    }
+}
+
+/// One for each sample of the sensor, a thousand a second; one that comes late finds its sample in a queue and catches
+/// up.
+#[inline(never)] // in SRAM, see memory.x
+fn turn(board: &mut Board, tracker: &mut Tracker<Instructions>) -> Result<(), Fault> {
+    let field = board.next_sample()?;
+    if let Some(command) = board.usb.command() {
+        obey(board, tracker, command);
+    }
+    breadcrumb::mark(Stage::Filter);
+    let health = board.health();
+    tracker.timed(&board.imu.timing);
+    let sample = &board.imu.sample;
+    let frame = tracker.update(sample, field, &health, &mut |line| board.usb.send(line));
+    if let Some(frame) = frame {
+        board.usb.send(&frame);
+    }
+    board.end_of_turn();
+    Ok(())
+}
+
+/// This command and whatever else the host has typed.
+#[cold]
+#[inline(never)]
+fn obey(board: &mut Board, tracker: &mut Tracker<Instructions>, first: Command) {
+    let mut next = Some(first);
+    while let Some(command) = next {
+        tracker.command(command, &mut |line| board.usb.send(line));
+        next = board.usb.command();
+    }
+    board.lock_on(tracker.lock());
+    if let Some(record) = tracker.take_calibration_to_keep() {
+        board.keep_calibration(&record);
     }
 }

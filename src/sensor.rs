@@ -39,7 +39,7 @@ pub const BURST_LEN: usize = 15;
 pub type Burst = [u8; BURST_LEN];
 
 /// RAW_DATA_RDY_INT in INT_STATUS: the output registers hold a sample not yet read.
-const RAW_DATA_READY: u8 = 1 << 0;
+pub const RAW_DATA_READY: u8 = 1 << 0;
 
 /// Counts per full range: 2¹⁵.
 ///
@@ -90,6 +90,14 @@ impl RawSample {
         }
     }
 
+    /// The same once more, where the sensor had nothing new.
+    pub fn repeated(self) -> Self {
+        Self {
+            fresh: false,
+            ..self
+        }
+    }
+
     /// Temperature of the die in °C: counts / 333.87 + 21 (register map, registers 65 and 66;
     /// data sheet, table 3). The counts are signed: below 21 °C they are negative.
     pub fn temperature_celsius(&self) -> f32 {
@@ -97,11 +105,12 @@ impl RawSample {
     }
 
     /// True if any axis stands at the end of its range: the true value may lie beyond it.
+    #[inline(always)]
     pub fn clipped(&self) -> bool {
-        self.gyro
-            .iter()
-            .chain(&self.accel)
-            .any(|&counts| counts == i16::MAX || counts == i16::MIN)
+        // Both ends become the upper one. Written out, for it is asked of every sample.
+        let end = |counts: i16| counts ^ (counts >> 15) == i16::MAX;
+        let ([p, q, r], [x, y, z]) = (self.gyro, self.accel);
+        end(p) | end(q) | end(r) | end(x) | end(y) | end(z)
     }
 }
 
@@ -129,6 +138,16 @@ impl GyroRange {
             Self::Dps500 => 500.0,
             Self::Dps1000 => 1000.0,
             Self::Dps2000 => 2000.0,
+        }
+    }
+
+    /// Counts of 1 °/s.
+    pub const fn counts_per_dps(self) -> f32 {
+        match self {
+            Self::Dps250 => 131.072,
+            Self::Dps500 => 65.536,
+            Self::Dps1000 => 32.768,
+            Self::Dps2000 => 16.384,
         }
     }
 
@@ -162,6 +181,16 @@ impl AccelRange {
             Self::G4 => 4.0,
             Self::G8 => 8.0,
             Self::G16 => 16.0,
+        }
+    }
+
+    /// Counts of 1 g.
+    pub const fn counts_per_g(self) -> u16 {
+        match self {
+            Self::G2 => 16384,
+            Self::G4 => 8192,
+            Self::G8 => 4096,
+            Self::G16 => 2048,
         }
     }
 

@@ -2,40 +2,52 @@
 //! everything that follows: units, bias, filter, and every tenth time a line. The firmware and
 //! the tests run this same code.
 //!
-//! The timer is the time base, not the sensor. The sensor's own clock is a per cent or so off, so
-//! now and then a sample comes twice and now and then one is missed; a repeated one is integrated
-//! again (the rate is held for the sample that is not there) and counted.
+//! The sensor is the time base, and its clock a per cent or so off: [`Tracker::timed`] says by how much. A sample that
+//! could not be read is bridged by the one before (the rate is held for the sample that is not there) and counted.
 //!
 //! [`Tracker::update`]: crate::tracker::Tracker::update
+//! [`Tracker::timed`]: crate::tracker::Tracker::timed
 //! [`SAMPLE_PERIOD`]: crate::tracker::SAMPLE_PERIOD
 
 mod answers;
 mod calibration;
 mod compass;
 mod estimators;
+mod show;
+mod stream;
+mod views;
 
 use crate::calibration::record::Record;
-use crate::calibration::{GyroBias, Reading, Rest, Stillness, Verdict};
+use crate::calibration::{Reading, Rest, Stillness, Verdict};
 use crate::command::request::UseCompass;
 use crate::command::{Command, Mode};
-use crate::orientation::flatland::Flatland;
-use crate::orientation::gyro::DeadReckoning;
-use crate::orientation::{DEFAULT_TIME_CONSTANT, angles};
+use crate::fixed::fusion::{Field, Force, Nanoseconds};
+use crate::fixed::multiply::{Multiply, Portable};
+use crate::sampling::{Lock, Timing};
 use crate::sensor::magnetometer::{RawField, SensitivityAdjustment};
 use crate::sensor::{Ranges, RawSample, Sample};
-use crate::units::{MagneticField, Seconds, SpecificForce};
-use crate::wire::{self, Decimals, Line, Tag};
+use crate::units::Seconds;
+use crate::wire::frame::{Counts, Frame};
+use crate::wire::{self, Line};
 use calibration::Calibration;
 use compass::Compass;
 use estimators::Estimators;
-use nalgebra::UnitQuaternion;
+use nalgebra::{Quaternion, UnitQuaternion};
+use stream::Stream;
+use views::Views;
 
 /// The sensor's own rate with its filter in use, 1 kHz.
 pub const SAMPLE_PERIOD: Seconds<f32> = Seconds(0.001);
 
-/// Samples per line: 100 lines a second. The course's Unity script reads 64 bytes per frame and
-/// falls behind by a second above about 128 lines a second.
-pub const LINE_EVERY: u32 = 10;
+/// The same in µs.
+const SAMPLE_MICROS: u32 = 1000;
+
+/// Samples per line, if nobody asks for more or less: 100 lines a second. The course's Unity script reads
+/// 64 bytes per frame and falls behind by a second above about 128 lines a second.
+pub const LINE_EVERY: u16 = 10;
+
+/// Samples between two looks at the sensor's measured period.
+const PERIOD_EVERY: u32 = 64;
 
 /// Samples per INFO block: one second.
 const INFO_EVERY: u32 = 1000;
@@ -55,7 +67,7 @@ pub const STILL_DEADLINE: u32 = 5000;
 pub struct Health {
     /// Lines thrown away because the host did not read.
     pub dropped_lines: u32,
-    /// Ticks of the timer that found the bus still busy with the last sample.
+    /// Samples that were never read, the bus being in error or in use, or that found no room on their way.
     pub overruns: u32,
     /// Times that measurements of the magnetometer were overwritten before they were read.
     pub skipped_fields: u32,
@@ -63,24 +75,25 @@ pub struct Health {
 
 /// Everything between the sensor's counts and the lines to the host.
 #[derive(Clone, Debug)]
-pub struct Tracker {
+pub struct Tracker<M = Portable> {
     ranges: Ranges,
     mode: Mode,
-    decimals: Decimals,
+    stream: Stream,
     /// The window the bias came from; none if it was never still.
     rest: Option<Rest>,
     measurement: Option<Measurement>,
     /// Whether the orientation runs without a bias measured at rest.
     bias_unknown: bool,
-    estimators: Estimators,
-    gyro: DeadReckoning<f32>,
-    flat: Flatland<f32>,
+    estimators: Estimators<M>,
+    views: Views<M>,
     compass: Compass,
     use_compass: UseCompass,
     calibration: Calibration,
     phase: Phase,
     ticks: u32,
-    counts: Counts,
+    counts: Tally,
+    timing: Option<Timing>,
+    lock: Lock,
 }
 
 /// Whether there is an orientation, and what the next sample is to do to it.
@@ -103,7 +116,7 @@ struct Measurement {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Counts {
+struct Tally {
     fresh_this_second: u32,
     fresh_last_second: u32,
     repeated: u32,
@@ -113,26 +126,40 @@ struct Counts {
     unclipped: u32,
 }
 
-impl Tracker {
-    /// For a sensor set to these ranges. Begins by measuring the bias.
+impl Tracker<Portable> {
+    /// For a sensor set to these ranges, in plain Rust. See [`with`](Self::with).
     pub fn new(ranges: Ranges) -> Self {
+        Self::with(ranges)
+    }
+}
+
+impl<M: Multiply> Tracker<M> {
+    /// For a sensor set to these ranges. Begins by measuring the bias. Products are taken by `M`.
+    pub fn with(ranges: Ranges) -> Self {
         Self {
             ranges,
             mode: Mode::default(),
-            decimals: Decimals::COURSE,
+            stream: Stream::default(),
             rest: None,
             measurement: Some(Measurement::new(ranges)),
             bias_unknown: false,
-            estimators: Estimators::default(),
-            gyro: DeadReckoning::new(SAMPLE_PERIOD),
-            flat: Flatland::new(DEFAULT_TIME_CONSTANT, SAMPLE_PERIOD),
+            estimators: Estimators::new(ranges),
+            views: Views::new(ranges),
             compass: Compass::none(),
             use_compass: UseCompass::default(),
-            calibration: Calibration::new(),
+            calibration: Calibration::new(ranges),
             phase: Phase::Starting,
             ticks: 0,
-            counts: Counts::default(),
+            counts: Tally::default(),
+            timing: None,
+            lock: Lock::default(),
         }
+    }
+
+    /// To be called before [`Tracker::update`] by those who know it: when the sample was ready, and how far apart
+    /// samples are. Without, they are [`SAMPLE_PERIOD`] apart.
+    pub fn timed(&mut self, timing: &Timing) {
+        self.timing = Some(*timing);
     }
 
     /// Takes a key, which has its effect with the next sample, or a line, which is answered at once.
@@ -186,6 +213,11 @@ impl Tracker {
         }
     }
 
+    /// What the host wants the sensor to be read by.
+    pub fn lock(&self) -> Lock {
+        self.lock
+    }
+
     /// What is to be kept, once after each change of it.
     pub fn take_calibration_to_keep(&mut self) -> Option<Record> {
         self.calibration.take_to_keep()
@@ -202,43 +234,59 @@ impl Tracker {
 
     /// The fused orientation, body to world; the identity until there is one.
     pub fn orientation(&self) -> UnitQuaternion<f32> {
-        self.estimators.orientation()
+        unit(self.estimators.orientation())
     }
 
     /// One sample, with what the magnetometer has measured since the one before, if it has. `emit` is
     /// given the lines they lead to: mostly none, every tenth time one to three, and once a second
-    /// up to eleven.
+    /// up to eleven. Returns the binary frame of this sample, where one is asked for and due.
+    ///
+    /// What does not happen with every sample is in functions of its own, so that a board can keep the
+    /// rest where it is quick.
+    #[inline(always)]
     pub fn update(
         &mut self,
         raw: &RawSample,
         field: Option<RawField>,
         health: &Health,
         emit: &mut impl FnMut(&Line),
-    ) {
+    ) -> Option<Frame> {
         self.count(raw);
-        self.tell_of_clipping(raw, emit);
-        let measured = self.compass.update(field);
-        if let Some(error) = measured.warning {
-            emit(&wire::text(format_args!("warning: {error}")));
+        self.counts.unclipped = self.counts.unclipped.saturating_add(1);
+        if raw.clipped() {
+            self.tell_of_clipping(raw, emit);
         }
-        let field = measured.result.and_then(Result::ok);
-        let field = field.filter(|_| self.follows_compass());
-        let field = field.map(|field| self.calibration.field(field));
-        let sample = self.calibration.sample(self.ranges.sample(raw));
-        let reading = self.track(sample, field);
-        self.measure(raw, sample.force, emit);
-        self.tell_of_bias(emit);
-        if self.phase != Phase::Starting {
-            self.show(&reading, health, emit);
+        let taken = field.and_then(|field| self.take_field(field, emit));
+        self.track(raw, taken);
+        if self.measurement.is_some() {
+            self.measure(raw, emit);
         }
+        if self.phase == Phase::Starting {
+            return None;
+        }
+        if self.bias_unknown || !self.estimators.bias_is_measured() {
+            self.tell_of_bias(emit);
+        }
+        if !self.every(self.shown_every()) {
+            return None;
+        }
+        let counts = Counts {
+            sample: *raw,
+            field,
+        };
+        self.show(&counts, health, emit)
     }
 
+    #[inline(always)]
     fn count(&mut self, raw: &RawSample) {
         self.ticks = self.ticks.wrapping_add(1);
         if raw.fresh {
             self.counts.fresh_this_second += 1;
         } else {
             self.counts.repeated = self.counts.repeated.saturating_add(1);
+        }
+        if self.every(PERIOD_EVERY) {
+            self.follow_period();
         }
         if self.every(INFO_EVERY) {
             self.counts.fresh_last_second = self.counts.fresh_this_second;
@@ -247,15 +295,34 @@ impl Tracker {
         }
     }
 
+    #[inline(never)]
+    fn follow_period(&mut self) {
+        if let Some(timing) = self.timing {
+            let period = Nanoseconds(timing.period_ns);
+            self.estimators.set_sample_period(period);
+        }
+    }
+
+    /// The field corrected, if it is to be followed.
+    #[inline(never)]
+    fn take_field(&mut self, raw: RawField, emit: &mut impl FnMut(&Line)) -> Option<Field> {
+        if let Some(error) = self.compass.update(raw) {
+            emit(&wire::text(format_args!("warning: {error}")));
+        }
+        if !self.follows_compass() {
+            return None;
+        }
+        let field = self.compass.last()?.ok()?;
+        Some(Field::new(self.calibration.field(field)))
+    }
+
     /// A sensor at the end of its range hides how far beyond it the truth is. It is told of when it
     /// begins; the estimators make good what they can once it is over.
+    #[cold]
+    #[inline(never)]
     fn tell_of_clipping(&mut self, raw: &RawSample, emit: &mut impl FnMut(&Line)) {
         let counts = &mut self.counts;
-        if !raw.clipped() {
-            counts.unclipped = counts.unclipped.saturating_add(1);
-            return;
-        }
-        if raw.fresh && (counts.clipped == 0 || counts.unclipped >= CLIPPED_AGAIN) {
+        if raw.fresh && (counts.clipped == 0 || counts.unclipped > CLIPPED_AGAIN) {
             emit(&wire::text(
                 "warning: the sensor is at the end of its range: turned or knocked too hard",
             ));
@@ -264,35 +331,58 @@ impl Tracker {
         counts.unclipped = 0;
     }
 
+    #[inline(always)]
     fn every(&self, samples: u32) -> bool {
         self.ticks.is_multiple_of(samples)
     }
 
-    /// The default mode runs the chosen estimator and nothing else. Returns the sample without the
-    /// bias that it takes off.
+    /// The default mode runs the chosen estimator and nothing else.
     #[inline(never)] // a function of its own in the image, which the emulator times
-    fn track(&mut self, sample: Sample<f32>, field: Option<MagneticField<f32>>) -> Reading<f32> {
+    fn track(&mut self, raw: &RawSample, field: Option<Field>) {
         match self.phase {
-            Phase::Starting => return GyroBias::zero().correct(sample),
-            Phase::Running => self.estimators.update(&sample, field),
-            Phase::Resetting => self.start(sample.force),
-            Phase::Releveling => {
-                self.estimators.level(sample.force);
-                self.flat.reset(sample.force);
-                self.phase = Phase::Running;
+            Phase::Starting => return,
+            Phase::Running => {
+                let force = self.force(raw);
+                self.estimators.update(raw.gyro, force, field);
             }
+            Phase::Resetting => self.start(self.force(raw)),
+            Phase::Releveling => self.level(self.force(raw)),
         }
-        let reading = self.estimators.bias().correct(sample);
+        if matches!(self.mode, Mode::Flat | Mode::ThreeD) {
+            self.update_views(raw);
+        }
+    }
+
+    #[inline(never)]
+    fn update_views(&mut self, raw: &RawSample) {
         match self.mode {
             Mode::Flat => {
-                self.flat.update(&reading);
+                let (sample, bias) = (self.sample(raw), self.estimators.bias());
+                self.views
+                    .update_flat(sample, bias, self.estimators.sample_period());
             }
             Mode::ThreeD => {
-                self.gyro.update(&reading);
+                let (bias, period) = (self.estimators.bias(), self.estimators.sample_period());
+                self.views.update_gyro(raw.gyro, bias, period);
             }
             Mode::Info | Mode::Gyro | Mode::Accel | Mode::Quaternion => {}
         }
-        reading
+    }
+
+    /// The force corrected.
+    #[inline(always)]
+    fn force(&self, raw: &RawSample) -> Force {
+        self.calibration.force(raw.accel)
+    }
+
+    /// In physical units, with the force corrected and the gyro's bias still in it.
+    fn sample(&self, raw: &RawSample) -> Sample<f32> {
+        self.calibration.sample(self.ranges.sample(raw))
+    }
+
+    /// In physical units, without the bias that the estimator takes off.
+    fn reading(&self, raw: &RawSample) -> Reading<f32> {
+        self.estimators.bias().correct(self.sample(raw))
     }
 
     /// Yaw 0, and the tilt that this force (body frame) shows.
@@ -300,26 +390,29 @@ impl Tracker {
     /// For `r` the course's firmware goes to the identity and leaves the rest to its filter, which
     /// is level again within a few samples. With a time constant of seconds the picture would lean
     /// for half a minute.
-    fn start(&mut self, force: SpecificForce<f32>) {
+    #[cold]
+    #[inline(never)]
+    fn start(&mut self, force: Force) {
         self.estimators.reset(force);
-        self.flat.reset(force);
-        self.gyro.set(self.estimators.orientation());
+        self.restart_views();
+        self.phase = Phase::Running;
+    }
+
+    /// After a gap: the tilt at once, the yaw kept.
+    #[cold]
+    #[inline(never)]
+    fn level(&mut self, force: Force) {
+        self.estimators.level(force);
+        self.restart_views();
         self.phase = Phase::Running;
     }
 
     fn restart_views(&mut self) {
-        let orientation = self.estimators.orientation();
-        self.gyro.set(orientation);
-        let up = orientation.inverse() * nalgebra::Vector3::y();
-        self.flat.reset(SpecificForce::from_g(up));
+        self.views.restart(self.estimators.orientation());
     }
 
-    fn measure(
-        &mut self,
-        raw: &RawSample,
-        force: SpecificForce<f32>,
-        emit: &mut impl FnMut(&Line),
-    ) {
+    #[inline(never)]
+    fn measure(&mut self, raw: &RawSample, emit: &mut impl FnMut(&Line)) {
         let Some(measurement) = &mut self.measurement else {
             return;
         };
@@ -335,7 +428,7 @@ impl Tracker {
                 self.bias_unknown = false;
                 self.rest = Some(rest);
                 if starting {
-                    self.start(rest.force);
+                    self.start(Force::new(rest.force, self.ranges.accel));
                 }
                 emit(&wire::bias_measured(rest.gyro_bias));
             }
@@ -343,7 +436,7 @@ impl Tracker {
                 if measurement.samples >= STILL_DEADLINE {
                     self.measurement = None;
                     if starting {
-                        self.start(force);
+                        self.start(self.force(raw));
                         emit(&wire::text(
                             "warning: not still for 5 s, gyro bias unknown: lay the board down for two seconds",
                         ));
@@ -357,8 +450,10 @@ impl Tracker {
 
     /// A board that was never still streams all the same, and says now and then that it drifts; its
     /// first rest is told of.
+    #[cold]
+    #[inline(never)]
     fn tell_of_bias(&mut self, emit: &mut impl FnMut(&Line)) {
-        let unknown = self.phase != Phase::Starting && !self.estimators.bias_is_measured();
+        let unknown = !self.estimators.bias_is_measured();
         if self.bias_unknown && !unknown {
             emit(&wire::bias_measured(self.estimators.bias().rate()));
         }
@@ -369,56 +464,6 @@ impl Tracker {
             ));
         }
     }
-
-    fn show(&self, reading: &Reading<f32>, health: &Health, emit: &mut impl FnMut(&Line)) {
-        if self.mode == Mode::Info {
-            if self.every(INFO_EVERY) {
-                self.show_info(health, emit);
-            }
-            return;
-        }
-        if !self.every(LINE_EVERY) {
-            return;
-        }
-        let fused = || wire::quaternion(Tag::Fused, &self.estimators.orientation(), self.decimals);
-        match self.mode {
-            Mode::Info => {}
-            Mode::Flat => emit(&wire::flat(&self.flat.roll())),
-            Mode::ThreeD => {
-                emit(&wire::quaternion(
-                    Tag::Gyro,
-                    &self.gyro.orientation(),
-                    self.decimals,
-                ));
-                emit(&wire::angles(&angles::pitch_and_roll(reading.force())));
-                emit(&fused());
-            }
-            Mode::Gyro => emit(&wire::gyro(reading.rate())),
-            Mode::Accel => emit(&wire::force(reading.force())),
-            Mode::Quaternion => emit(&fused()),
-        }
-    }
-
-    fn show_info(&self, health: &Health, emit: &mut impl FnMut(&Line)) {
-        emit(&wire::reads_per_second(self.counts.fresh_last_second));
-        emit(&wire::gyro_bias(self.estimators.bias().rate()));
-        // Nothing is known of the rest if the board never rested.
-        if let Some(rest) = &self.rest {
-            emit(&wire::gyro_variance(rest));
-            emit(&wire::force_mean(rest));
-            emit(&wire::force_variance(rest));
-        }
-        emit(&wire::dropped(health.dropped_lines));
-        emit(&wire::repeated(self.counts.repeated));
-        emit(&wire::overruns(health.overruns));
-        emit(&wire::clipped(self.counts.clipped));
-        match self.compass.last() {
-            Some(Ok(field)) => emit(&wire::field(field, self.compass.per_second())),
-            Some(Err(error)) => emit(&wire::text(format_args!("Field: {error}"))),
-            None => emit(&wire::no_field()),
-        }
-        emit(&wire::fields_skipped(health.skipped_fields));
-    }
 }
 
 impl Measurement {
@@ -428,4 +473,10 @@ impl Measurement {
             samples: 0,
         }
     }
+}
+
+/// In single precision, from units of 2⁻³⁰.
+fn unit(bits: [i32; 4]) -> UnitQuaternion<f32> {
+    let [w, x, y, z] = bits.map(|bits| bits as f32 / (1 << 30) as f32);
+    UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
 }

@@ -23,3 +23,8 @@ mod magnetometer;
 
 #[path = "boot/store.rs"]
 mod store;
+
+#[path = "boot/sampling.rs"]
+mod sampling;
+#[path = "boot/streams.rs"]
+mod streams;

@@ -4,9 +4,10 @@
 mod random;
 
 use random::Random;
-use vrduino::command::request::{Choice, Request, Setting, UseCompass};
+use vrduino::command::request::{Choice, Format, Request, Setting, UseCompass};
 use vrduino::command::{Command, Mode, Parser};
-use vrduino::wire::{Decimals, LINE_LEN};
+use vrduino::sampling::Lock;
+use vrduino::wire::{Decimals, LINE_LEN, Provenance, Q30, frame};
 
 #[test]
 fn keys_are_single_bytes_and_others_mean_nothing() {
@@ -74,6 +75,17 @@ fn every_verb_is_understood() {
         ),
         ("decimals", Request::Decimals(None)),
         ("decimals 5", Request::Decimals(Decimals::new(5))),
+        ("stream", Request::Stream(None)),
+        ("stream text", Request::Stream(Some(Format::Text))),
+        ("stream timed", Request::Stream(Some(Format::Timed))),
+        ("stream binary", Request::Stream(Some(Format::Binary))),
+        ("stream counts", Request::Stream(Some(Format::Counts))),
+        ("every", Request::Every(None)),
+        ("every 1", Request::Every(Some(1))),
+        ("every 1000", Request::Every(Some(1000))),
+        ("lock", Request::Lock(None)),
+        ("lock sensor", Request::Lock(Some(Lock::Sensor))),
+        ("lock usb", Request::Lock(Some(Lock::Usb))),
         ("compass", Request::Compass(None)),
         ("compass on", Request::Compass(Some(UseCompass::On))),
         ("compass auto", Request::Compass(Some(UseCompass::Auto))),
@@ -109,6 +121,7 @@ fn a_refusal_names_the_word_and_fits_a_line() {
         ("", ": no such verb, :help lists them"),
         ("HELP", "HELP: no such verb, :help lists them"),
         ("estimator kalman", "kalman: default or notes is wanted"),
+        ("lock moon", "moon: sensor or usb is wanted"),
         ("compass maybe", "maybe: auto, on or off is wanted"),
         ("get tau", "tau: no such setting, :set lists them"),
         ("set lead", "lead: a number like 0.98 is wanted"),
@@ -122,6 +135,11 @@ fn a_refusal_names_the_word_and_fits_a_line() {
         ("set field-tolerance 0", "0: field-tolerance is 0.01 to 1 "),
         ("decimals 2", "2: 3 to 6 is wanted"),
         ("decimals many", "many: 3 to 6 is wanted"),
+        ("stream hex", "hex: text, timed, binary or counts is wanted"),
+        ("every 0", "0: 1 to 1000 is wanted"),
+        ("every 1001", "1001: 1 to 1000 is wanted"),
+        ("every -1", "-1: 1 to 1000 is wanted"),
+        ("every 99999999", "99999999: 1 to 1000 is wanted"),
         ("bias now", "now: one word too many"),
         ("help me", "me: one word too many"),
         ("caf\u{e9}", "caf??: no such verb, :help lists them"),
@@ -189,8 +207,12 @@ fn whatever_is_typed_is_a_command_or_nothing() {
     let mut parser = Parser::new();
     let alphabet = b":setlad .0129-\n\r\xFF\0br";
     let mut answers = 0;
-    for _ in 0..2_000_000 {
+    for round in 0..2_000_000 {
         let index = (random.unit() * alphabet.len() as f64) as usize;
+        if round % 10 == 0 {
+            // Or a zero would silence it for good.
+            (0..20).for_each(|_| parser.idle());
+        }
         if let Some(Command::Line(Err(refusal))) = parser.push(alphabet[index]) {
             assert!(refusal.to_string().len() < LINE_LEN - 4);
             answers += 1;
@@ -224,4 +246,35 @@ fn an_echo_of_the_stream_presses_no_keys_and_a_mistyped_key_is_soon_forgotten() 
         parser.idle();
     }
     assert_eq!(parser.push(b'2'), Some(Command::Mode(Mode::ThreeD)));
+}
+
+#[test]
+fn an_echo_of_frames_presses_no_keys() {
+    let mut random = Random(3);
+    let mut byte = || (random.unit() * 256.0) as u8;
+    for cooked in [false, true] {
+        let mut parser = Parser::new();
+        assert_eq!(parser.push(b'2'), Some(Command::Mode(Mode::ThreeD)));
+        for _ in 0..100_000 {
+            let q = Q30([(); 4].map(|()| i32::from_le_bytes([(); 4].map(|()| byte()))));
+            let frame = frame::orientation(q, Provenance::default());
+            let line = b"OK stream binary every 1\n".as_slice();
+            for &byte in frame.iter().chain(line) {
+                // As a terminal in its default state shows what is no letter.
+                let shown = match byte {
+                    b'\r' if cooked => vec![b'\n'],
+                    0..32 if cooked && byte != b'\n' => vec![b'^', byte + 64],
+                    127 if cooked => b"^?".to_vec(),
+                    other => vec![other],
+                };
+                for byte in shown {
+                    assert_eq!(parser.push(byte), None);
+                }
+            }
+            (0..5).for_each(|_| parser.idle());
+        }
+        // It ends when the echo does.
+        (0..20).for_each(|_| parser.idle());
+        assert_eq!(parser.push(b'2'), Some(Command::Mode(Mode::ThreeD)));
+    }
 }

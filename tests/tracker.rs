@@ -5,6 +5,7 @@ mod bench;
 
 use bench::{Bench, LEVEL, handled};
 use nalgebra::{UnitQuaternion, Vector3};
+use vrduino::sampling::Timing;
 use vrduino::sensor::RawSample;
 use vrduino::tracker::{Health, STILL_DEADLINE};
 
@@ -365,4 +366,23 @@ fn the_end_of_the_range_is_told_of_when_it_begins() {
     bench.press(b'0');
     bench.feed(1000, |_| LEVEL);
     assert_eq!(bench.tagged("CLIPPED"), ["CLIPPED: 75\n"]);
+}
+
+#[test]
+fn a_sensor_with_a_slower_clock_turns_as_far() {
+    for (period_ns, samples) in [(1_000_000, 1000), (1_010_000, 990), (990_000, 1010)] {
+        let mut bench = Bench::started();
+        bench.tracker.timed(&Timing {
+            period_ns,
+            ..Timing::default()
+        });
+        // A second at 100.1 °/s (1640 counts) about y, with the bias on top.
+        bench.feed(samples, |_| RawSample {
+            gyro: [0, 1648, 0],
+            ..LEVEL
+        });
+        let q: UnitQuaternion<f32> = bench.tracker.orientation();
+        let turned = f64::from(q.angle()).to_degrees();
+        assert!((turned - 100.1).abs() < 0.3, "{turned} at {period_ns} ns");
+    }
 }

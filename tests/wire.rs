@@ -1,11 +1,26 @@
-//! Every line to the byte: a changed line turns a test red before it turns a viewer blank.
+//! Every line and frame to the byte: a changed one turns a test red before it turns a viewer blank.
+
+#[path = "random/mod.rs"]
+mod random;
+
+#[path = "wire/orientation.rs"]
+mod orientation;
+
+#[path = "wire/frame.rs"]
+mod frame;
+
+#[path = "wire/hosts.rs"]
+mod hosts;
+
+#[path = "wire/decoder.rs"]
+mod decoder;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use vrduino::calibration::Rest;
 use vrduino::orientation::angles::pitch_and_roll;
 use vrduino::orientation::flatland::Roll;
 use vrduino::units::{Angle, AngularRate, MagneticField, SpecificForce};
-use vrduino::wire::{self, Decimals, LINE_LEN, Line, Tag};
+use vrduino::wire::{self, Decimals, LINE_LEN, Line, Q30, Tag};
 
 /// A value as ACC prints it: the line holds the number as given.
 fn three_decimals(value: f32) -> String {
@@ -34,16 +49,16 @@ fn check(line: &Line, expected: &str) {
 fn quaternions_are_scalar_first() {
     let q = UnitQuaternion::new_unchecked(Quaternion::new(0.5, -0.5, 0.1, 0.7));
     check(
-        &wire::quaternion(Tag::Fused, &q, Decimals::COURSE),
+        &wire::quaternion(Tag::Fused, Q30::from(&q), Decimals::COURSE),
         "QC 0.500 -0.500 0.100 0.700\n",
     );
     check(
-        &wire::quaternion(Tag::Gyro, &q, Decimals::COURSE),
+        &wire::quaternion(Tag::Gyro, Q30::from(&q), Decimals::COURSE),
         "QG 0.500 -0.500 0.100 0.700\n",
     );
     let level = UnitQuaternion::identity();
     check(
-        &wire::quaternion(Tag::Fused, &level, Decimals::COURSE),
+        &wire::quaternion(Tag::Fused, Q30::from(&level), Decimals::COURSE),
         "QC 1.000 0.000 0.000 0.000\n",
     );
 }
@@ -183,7 +198,7 @@ fn a_printed_quaternion_is_a_rotation_to_two_parts_in_a_thousand() {
     for _ in 0..20_000 {
         let q = Quaternion::new(random(), random(), random(), random());
         let q = UnitQuaternion::new_normalize(q);
-        let line = wire::quaternion(Tag::Fused, &q, Decimals::COURSE);
+        let line = wire::quaternion(Tag::Fused, Q30::from(&q), Decimals::COURSE);
         let numbers: Vec<f64> = line
             .strip_prefix("QC ")
             .and_then(|rest| rest.strip_suffix('\n'))

@@ -1,106 +1,30 @@
-//! What the images feed their filters with, and what the tests on the host feed the same filters with.
+//! What an update of a filter costs on the chip: each is run in the emulator and counted, beside a reference in double
+//! precision on the host.
+//!
+//! | module | does |
+//! |---|---|
+//! | `subject` | the filters that are counted, and how they are found |
+//! | `count` | runs one on the emulated chip |
+//! | `reference` | what it should have come to |
+//! | `firmware` | runs the whole tracker, from the sensor to USB |
+//! | `published` | figures of others that are not measured here |
+//! | `table`, `json` | for people, for programs |
+//!
+//! Counts are exact: the same image gives the same again. Nothing is timed by a clock.
 
-#![no_std]
-#![forbid(unsafe_code)]
+pub mod subject;
 
-pub mod fusion;
+pub mod count;
 
-use vrduino::fixed::complementary::{Bias, Complementary, Nanoseconds, Parameters};
-use vrduino::fixed::multiply::Multiply;
-use vrduino::orientation::{DEFAULT_TIME_CONSTANT, TimeConstant};
-use vrduino::sensor::{GyroRange, RawSample};
-use vrduino::units::Seconds;
+pub mod reference;
 
-/// How many samples an image takes of each kind.
-pub const SAMPLES: u32 = 4000;
+pub mod firmware;
 
-/// What the gyro of the motions reads at rest, in 2⁻¹⁵ counts.
-const BIAS: [i32; 3] = [1_234_567, -765_432, 98_765];
+pub mod published;
 
-/// A motion, and how it is filtered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motion {
-    /// A level board that turns about the vertical at up to 300 °/s, with noise: within 45° of level.
-    Level,
-    /// Anything the registers can hold, each end and zero more often than by chance.
-    Anything,
-    /// The same with a time constant of no time at all, α = 0.
-    AnythingAtOnce,
-}
+pub mod table;
 
-impl Motion {
-    /// Every one.
-    pub const ALL: [Self; 3] = [Self::Level, Self::Anything, Self::AnythingAtOnce];
+pub mod json;
 
-    /// The filter at its start, at ±2000 °/s and 1 kHz.
-    pub fn filter<M: Multiply>(self) -> Complementary<M> {
-        let mut filter = Complementary::with(&Parameters {
-            gyro: GyroRange::Dps2000,
-            sample_period: Nanoseconds(1_000_000),
-            time_constant: match self {
-                Self::Level | Self::Anything => DEFAULT_TIME_CONSTANT,
-                Self::AnythingAtOnce => TimeConstant::new(Seconds(0.0)),
-            },
-        });
-        filter.set_bias(Bias::from_parts_of_counts(BIAS));
-        filter
-    }
-
-    /// Its sample of this number; `random` goes from one to the next.
-    pub fn sample(self, number: u32, random: &mut Random) -> RawSample {
-        let (gyro, accel) = match self {
-            Self::Level => {
-                // There and back, at 1.25 Hz.
-                let phase = (number % 800) as i16;
-                let turn = (phase - 400).abs() * 24 - 4800;
-                let gyro = [0, turn, 0].map(|counts| counts + random.noise(8));
-                (gyro, [0, 16384, 0].map(|counts| counts + random.noise(300)))
-            }
-            Self::Anything | Self::AnythingAtOnce => (
-                [(); 3].map(|()| random.counts()),
-                [(); 3].map(|()| random.counts()),
-            ),
-        };
-        RawSample {
-            gyro,
-            accel,
-            temperature: 0,
-            fresh: true,
-        }
-    }
-}
-
-/// Reproducible random counts (xorshift32).
-#[derive(Clone, Copy, Debug)]
-pub struct Random(u32);
-
-impl Default for Random {
-    fn default() -> Self {
-        Self(0x9E37_79B9)
-    }
-}
-
-impl Random {
-    fn next(&mut self) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0
-    }
-
-    /// From −`size` to `size`.
-    fn noise(&mut self, size: i16) -> i16 {
-        ((self.next() >> 16) as i16) / (i16::MAX / size)
-    }
-
-    fn counts(&mut self) -> i16 {
-        let bits = self.next();
-        match bits & 7 {
-            0 => 0,
-            1 => i16::MAX,
-            2 => i16::MIN,
-            3 => ((bits >> 16) as i16) >> 12,
-            _ => (bits >> 16) as i16,
-        }
-    }
-}
+/// The core's clock in MHz, which makes microseconds of cycles.
+pub const CORE_MHZ: f64 = 72.0;

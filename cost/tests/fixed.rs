@@ -5,14 +5,14 @@ mod image;
 
 use image::{Counted, table};
 use vrduino::fixed::multiply::Portable;
-use vrduino_cost::{Motion, Random, SAMPLES};
+use vrduino_cost_images::motion::{Motion, Random, SAMPLES};
 use vrduino_emulator::board::Board;
 use vrduino_emulator::time::MILLISECOND;
 
-/// Instructions of a whole update, bias and parameters included, near level: always the same number.
-const NEAR_LEVEL: u64 = 245;
+/// Instructions of a whole update, bias and parameters included, up to 45° from level: always the same number.
+const NEAR_LEVEL: u64 = 215;
 /// Most that any input may cost.
-const WORST: u64 = 1_000;
+const WORST: u64 = 600;
 
 const IMAGE: Counted = Counted("fixed-complementary");
 
@@ -23,12 +23,12 @@ fn at_the_end(function: &str) -> Board {
 
 #[test]
 fn near_level_every_update_costs_the_same() {
-    // Well before the next motion begins.
+    // Well before anything comes: level first, then tilted.
     let mut board = IMAGE.board("by_instructions");
-    while board.measure().calls.count < u64::from(SAMPLES) / 2 {
+    while board.measure().calls.count < u64::from(SAMPLES) * 3 / 2 {
         board.run(MILLISECOND);
         assert!(board.stop().is_none(), "{}", board.stop().unwrap());
-        assert_eq!(board.variable("DONE"), Some(0));
+        assert!(board.variable("DONE").is_some_and(|done| done < 2));
     }
     let calls = board.measure().calls;
     println!("{} instructions near level", calls.most_instructions);

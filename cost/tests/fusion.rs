@@ -5,8 +5,8 @@ mod image;
 
 use image::{Counted, run_until, table};
 use vrduino::fixed::multiply::Portable;
-use vrduino_cost::Random;
-use vrduino_cost::fusion::{Motion, SAMPLES};
+use vrduino_cost_images::fusion::{Motion, SAMPLES};
+use vrduino_cost_images::motion::Random;
 
 /// Instructions of a whole update without a field, start, rest and bias included: the mean, and most after the
 /// first sample.

@@ -2,7 +2,11 @@
 
 pub mod debug;
 
+pub mod figures;
+
 mod judgement;
+
+pub mod latency;
 
 mod loader;
 
@@ -11,6 +15,8 @@ pub mod measure;
 mod passing;
 
 mod polling;
+
+pub mod profile;
 
 pub mod setup;
 
@@ -24,6 +30,7 @@ use std::sync::{Arc, MutexGuard};
 
 use crate::chip::{Chip, INTERRUPTS};
 use crate::cpu::op::Access;
+use crate::cpu::timing::Cycles;
 use crate::cpu::{Cpu, Pace, PeripheralBus, RAM_BASE};
 use crate::image::Image;
 use crate::journal::Happening;
@@ -34,8 +41,10 @@ use crate::time::Ticks;
 use crate::witness::{Stop, Trap};
 pub use judgement::Event;
 use judgement::Storm;
+use latency::Latencies;
 use measure::{Measure, Moment};
 use polling::Polling;
+use profile::Profile;
 pub use setup::Setup;
 use shared::Shared;
 pub use snapshot::Snapshot;
@@ -77,6 +86,16 @@ pub struct Board {
     watch: Watch,
     /// Where the image's variables end: below this the stack must not grow.
     stack_limit: u32,
+    latencies: Latencies,
+    /// The same to the moment at which the host begins to take the packet.
+    taken: Latencies,
+    /// When the sample was ready that the packet at its endpoint holds.
+    armed: Option<Ticks>,
+    /// Where the USB controller looks for its buffer descriptors.
+    usb_table: u32,
+    profile: Option<Profile>,
+    /// Where the figures begin: the moment, the time awake and the time the bus was in use until then.
+    began: (Ticks, Cycles, Ticks),
 }
 
 impl Board {
@@ -121,6 +140,12 @@ impl Board {
             polling: setup.skip_polling.then(Polling::default),
             watch: Watch::default(),
             stack_limit,
+            latencies: Latencies::default(),
+            taken: Latencies::default(),
+            armed: None,
+            usb_table: 0,
+            profile: None,
+            began: (0, Cycles::default(), 0),
         }
     }
 
@@ -166,6 +191,12 @@ impl Board {
         self.last_access = step.access;
         self.pass(self.pace.of(step.cycles));
         self.measure.awake(step.cycles, self.core_hz);
+        if let Some(profile) = &mut self.profile {
+            profile.note(self.pc, step.cycles);
+        }
+        if let Some(access) = step.access.filter(|access| access.store) {
+            self.follow_sample(access.address);
+        }
         let moment = Moment {
             pc: self.pc,
             exception,
@@ -208,6 +239,20 @@ impl Board {
         }
     }
 
+    /// The program has stored something at `address`: a packet with the sample that it fetched last?
+    fn follow_sample(&mut self, address: u32) {
+        if address & !0x1FF != self.usb_table {
+            return;
+        }
+        let mut chip = self.shared.chip();
+        if chip.usb.is_armed_by(address, &chip.ram)
+            && let Some(ready) = chip.sensor.take_fetched()
+        {
+            self.latencies.push(self.now - ready);
+            self.armed = Some(ready);
+        }
+    }
+
     /// The processor has gone to another exception: into one, which pushes a frame or chains it to the end of the one
     /// before, or back. The stack does not tell a chain from a return, for a handler may end in popping registers.
     fn change_exception(&mut self, to: u16, pushed: bool) {
@@ -235,6 +280,11 @@ impl Board {
         let shared = Arc::clone(&self.shared);
         let mut chip = shared.chip();
         chip.advance();
+        if chip.usb.take_gone()
+            && let Some(ready) = self.armed.take()
+        {
+            self.taken.push(self.now - ready);
+        }
         if !chip.witness.is_empty() {
             let offences = chip.witness.take();
             drop(chip);
@@ -269,6 +319,7 @@ impl Board {
         }
         self.flash_ratio = chip.flash_ratio();
         self.next_event = chip.next_event();
+        self.usb_table = chip.usb.table();
     }
 
     fn reset(&mut self, cause: Cause, why: &str) {
@@ -334,6 +385,11 @@ impl Board {
     /// The present moment.
     pub fn now(&self) -> Ticks {
         self.now
+    }
+
+    /// How long samples were on their way.
+    pub fn latencies(&self) -> &Latencies {
+        &self.latencies
     }
 
     /// What the run is measured by.

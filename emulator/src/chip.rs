@@ -237,8 +237,14 @@ impl Chip {
         self.timer.advance(now, bus_hz);
         self.advance_modules();
         let journal = &mut self.journal;
-        self.i2c
-            .advance((now, bus_hz), &self.pins, &mut self.sensor, journal);
+        let witness = &mut self.witness;
+        self.i2c.advance(
+            (now, bus_hz),
+            &self.pins,
+            &mut self.sensor,
+            journal,
+            witness,
+        );
         self.hear_the_sensor();
         if now >= self.host.next_event() {
             let clocked = self.usb_clocked();
@@ -259,7 +265,8 @@ impl Chip {
             self.analog.converters[converter].trigger(trigger, &clocks);
         }
         self.analog.advance(&clocks);
-        self.communication.advance(&self.pins, &clocks);
+        self.communication
+            .advance(&self.pins, &clocks, &mut self.witness);
         self.touch.advance(self.now);
         for channel in self.timer.take_expired() {
             self.dma_mux.trigger(channel);

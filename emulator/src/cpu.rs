@@ -101,6 +101,8 @@ pub struct Cpu {
     before: Regs,
     /// Instructions of the flash by halfword, decoded when first met.
     code: Vec<Op>,
+    /// The same of the RAM, forgotten where the program stores something.
+    code_in_ram: Vec<Op>,
     timing: Timing,
     pace: Pace,
     owed: Owed,
@@ -126,6 +128,7 @@ impl Cpu {
             registers: Regs::new(),
             before: Regs::new(),
             code: vec![Op::UNMET; FLASH_SIZE as usize / 2],
+            code_in_ram: vec![Op::UNMET; RAM_SIZE as usize / 2],
             timing: Timing::default(),
             pace,
             owed: Owed::default(),
@@ -203,6 +206,9 @@ impl Cpu {
         if self.counting {
             self.owe(self.pace.of(cycles), charged);
         }
+        if let Some(access) = access.filter(|access| access.store) {
+            self.forget_code(&op, access);
+        }
         if op.class == Class::Sleep {
             self.asleep = self.core.is_asleep();
         }
@@ -224,15 +230,37 @@ impl Cpu {
     }
 
     fn op_at(&mut self, pc: u32) -> Op {
-        let Some(&op) = self.code.get(pc as usize / 2) else {
+        let in_ram = pc.wrapping_sub(RAM_BASE) as usize / 2;
+        let met = self.code.get(pc as usize / 2);
+        let Some(&met) = met.or_else(|| self.code_in_ram.get(in_ram)) else {
             return self.decode(pc);
         };
-        if op.length != 0 {
-            return op;
+        if met.length != 0 {
+            return met;
         }
         let op = self.decode(pc);
-        self.code[pc as usize / 2] = op;
+        match self.code.get_mut(pc as usize / 2) {
+            Some(place) => *place = op,
+            None => self.code_in_ram[in_ram] = op,
+        }
         op
+    }
+
+    /// The program has stored something: what was decoded there may be another instruction now.
+    fn forget_code(&mut self, op: &Op, access: Access) {
+        let Some(first) = access.address.checked_sub(RAM_BASE) else {
+            return;
+        };
+        let bytes = match op.class {
+            Class::Multiple(registers) => 4 * usize::from(registers),
+            _ => usize::from(access.bytes),
+        };
+        // An instruction of two halfwords may begin before.
+        let first = (first as usize / 2).saturating_sub(1);
+        let places = self.code_in_ram.iter_mut().skip(first);
+        places
+            .take(bytes.div_ceil(2) + 2)
+            .for_each(|place| *place = Op::UNMET);
     }
 
     fn decode(&self, pc: u32) -> Op {

@@ -10,21 +10,25 @@ use std::process::{Command, ExitStatus, Stdio};
 /// The chip's target: a Cortex-M4 without floating-point unit.
 pub const TARGET: &str = "thumbv7em-none-eabi";
 
-const PROFILE: &str = "image";
+/// How what is flashed is compiled.
+pub const PROFILE: &str = "image";
 
-/// A package of the workspace whose programs run on the chip.
+/// A package whose programs run on the chip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Package {
-    /// Its name.
-    pub name: &'static str,
-    /// The feature without which its programs are not built.
+    /// Its manifest, from the workspace's root.
+    pub manifest: &'static str,
+    /// The feature without which its programs are not built; empty for none.
     pub feature: &'static str,
+    /// The profile by which they are compiled.
+    pub profile: &'static str,
 }
 
 /// The tracker.
 const TRACKER: Package = Package {
-    name: "vrduino",
+    manifest: "Cargo.toml",
     feature: "firmware",
+    profile: PROFILE,
 };
 const TRACKER_PROGRAM: &str = "firmware";
 
@@ -36,7 +40,7 @@ const FOREIGN_FLAGS: [&str; 4] = [
     "CARGO_BUILD_RUSTFLAGS",
     "CARGO_TARGET_THUMBV7EM_NONE_EABI_RUSTFLAGS",
 ];
-const FOREIGN_PROFILE: &str = "CARGO_PROFILE_IMAGE_";
+const FOREIGN_PROFILE: &str = "CARGO_PROFILE_";
 
 /// How to build.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -77,13 +81,14 @@ pub fn build_package(package: Package, options: BuildOptions) -> Result<PathBuf,
     command
         .args([
             "build",
-            "--package",
-            package.name,
+            "--manifest-path",
+            package.manifest,
             "--bins",
             "--features",
             package.feature,
         ])
-        .args(["--target", TARGET, "--profile", PROFILE, "--target-dir"])
+        .args(["--target", TARGET, "--profile", package.profile])
+        .arg("--target-dir")
         .arg(&target_dir)
         .current_dir(&root)
         .stdin(Stdio::null())
@@ -106,7 +111,7 @@ pub fn build_package(package: Package, options: BuildOptions) -> Result<PathBuf,
     if !status.success() {
         return Err(BuildError::Build { status });
     }
-    Ok(target_dir.join(TARGET).join(PROFILE))
+    Ok(target_dir.join(TARGET).join(package.profile))
 }
 
 /// The workspace's root, where this crate was built from.

@@ -91,6 +91,8 @@ pub struct Faults {
 pub struct Burst {
     /// When INT_STATUS was read.
     pub at: Ticks,
+    /// When the sample that it holds was ready.
+    pub ready: Ticks,
     /// INT_STATUS, accelerometer, temperature, gyroscope: 0x3A to 0x48.
     pub bytes: [u8; 15],
     /// ST1 to ST2 of the magnetometer, if it was read through the bypass behind this burst.
@@ -125,6 +127,10 @@ pub struct Mpu9250 {
     pub complaints: Complaints,
     /// Every burst from INT_STATUS on, once recording was asked for.
     pub recording: Option<Vec<Burst>>,
+    /// When the last sample was ready.
+    last_ready: Ticks,
+    /// When the sample was ready that the last whole burst held, if it was a new one.
+    fetched: Option<Ticks>,
 }
 
 impl Mpu9250 {
@@ -154,6 +160,8 @@ impl Mpu9250 {
             faults: Faults::default(),
             complaints: Complaints::default(),
             recording: None,
+            last_ready: 0,
+            fetched: None,
         };
         sensor.reset_registers(0);
         sensor
@@ -193,6 +201,11 @@ impl Mpu9250 {
         if let Some(magnetometer) = &mut self.magnetometer {
             magnetometer.reset(now);
         }
+    }
+
+    /// When the sample was ready that the last whole burst held; once for each new sample.
+    pub fn take_fetched(&mut self) -> Option<Ticks> {
+        self.fetched.take()
     }
 
     /// Level of the INT pin, which the board does not connect: `true` is high.

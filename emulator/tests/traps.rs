@@ -15,8 +15,9 @@ fn images() -> &'static PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
         let package = Package {
-            name: "wrong-images",
+            manifest: "emulator/wrong-images/Cargo.toml",
             feature: "image",
+            profile: firmware::PROFILE,
         };
         firmware::build_package(package, BuildOptions { quiet: true })
             .expect("the wrong images build")

@@ -47,49 +47,45 @@ impl Stage {
     ];
 }
 
-/// Marks a word of this module's making, in the upper half; memory after power-on is random.
-const MAGIC: u32 = 0x4352_0000;
+/// Memory after power-on is random; these two words, once written, say that it is not.
+const MAGIC: [u32; 2] = [0x4352_554D, 0xBCAD_DAB2];
 /// Set where a hard fault was taken.
 const HARD_FAULT: u32 = 0x8000;
 
-/// The breadcrumb and its complement, which must agree to be believed.
+/// What is at hand, and whether to believe it. One word each, since it changes with every interrupt.
 // SAFETY: `.uninit` is RAM that start-up leaves alone; any content is a valid AtomicU32.
 #[unsafe(link_section = ".uninit.breadcrumb")]
-static CRUMB: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
-
-fn store(word: u32) {
-    CRUMB[0].store(word, Ordering::Relaxed);
-    CRUMB[1].store(!word, Ordering::Relaxed);
-}
+static CRUMB: AtomicU32 = AtomicU32::new(0);
+// SAFETY: as above.
+#[unsafe(link_section = ".uninit.breadcrumb")]
+static WRITTEN: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
 
 fn load() -> Option<u32> {
-    let (word, complement) = (
-        CRUMB[0].load(Ordering::Relaxed),
-        CRUMB[1].load(Ordering::Relaxed),
-    );
-    (word == !complement && word & 0xFFFF_0000 == MAGIC).then_some(word & 0xFFFF)
+    let written = [0, 1].map(|at: usize| WRITTEN[at].load(Ordering::Relaxed));
+    (written == MAGIC).then(|| CRUMB.load(Ordering::Relaxed))
 }
 
 /// Says what begins now.
+#[inline(always)]
 pub fn mark(stage: Stage) {
-    store(MAGIC | stage as u32);
+    CRUMB.store(stage as u32, Ordering::Relaxed);
 }
 
 /// Does `work` as `stage`, then goes back to what was at hand before: for interrupts.
+#[inline(always)]
 pub fn during<T>(stage: Stage, work: impl FnOnce() -> T) -> T {
-    let before = load();
+    let before = CRUMB.load(Ordering::Relaxed);
     mark(stage);
     let result = work();
-    if let Some(before) = before {
-        store(MAGIC | before);
-    }
+    CRUMB.store(before, Ordering::Relaxed);
     result
 }
 
 /// A fault of the core stops the program where it is; the watchdog does the rest.
 #[exception]
 unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
-    store(MAGIC | HARD_FAULT | load().unwrap_or(0));
+    let at = CRUMB.load(Ordering::Relaxed);
+    CRUMB.store(HARD_FAULT | at & 0xFF, Ordering::Relaxed);
     loop {
         cortex_m::asm::nop();
     }
@@ -104,8 +100,13 @@ pub struct LastLife {
 }
 
 impl LastLife {
-    /// Reads the reset's cause and the breadcrumb. To be called before the first [`mark`].
+    /// Reads the reset's cause and the breadcrumb. To be called before the first [`mark`]; from here on the breadcrumb
+    /// is this life's.
     pub fn read(reset_control: &pac::Rcm) -> Option<LastLife> {
+        let crumb = load();
+        for (word, magic) in WRITTEN.iter().zip(MAGIC) {
+            word.store(magic, Ordering::Relaxed);
+        }
         // RCM_SRS0 and SRS1 (K20 manual, 15.2.1): pin and power-on resets are nothing to report.
         let (srs0, srs1) = (
             reset_control.srs0().read().bits(),
@@ -118,7 +119,6 @@ impl LastLife {
             (_, srs1) if srs1 & 0x04 != 0 => "software",
             _ => return None,
         };
-        let crumb = load();
         let stage = crumb.and_then(|crumb| {
             let number = crumb & 0xFF;
             Stage::ALL

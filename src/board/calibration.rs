@@ -66,6 +66,11 @@ impl Calibration {
         self.next = Some(*record);
     }
 
+    /// Whether there is something to keep.
+    pub fn is_busy(&self) -> bool {
+        self.next.is_some() || self.store.is_saving()
+    }
+
     /// Goes on with it. Returns what the host is told once it has ended. To be called once in each turn
     /// of the main program; `now` is in milliseconds.
     pub fn serve(&mut self, now: u32) -> Option<Line> {

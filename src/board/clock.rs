@@ -4,34 +4,50 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::{DCB, DWT};
 use embedded_hal::delay::DelayNs;
-use mk20dx_hal::clocks::{Clocks, McgExt};
+use mk20dx_hal::clocks::McgExt;
 use mk20dx_hal::pac;
+
+use super::timer;
 
 /// Core cycles in a microsecond.
 const CYCLES_PER_US: u32 = 72;
 
-static MILLISECONDS: AtomicU32 = AtomicU32::new(0);
+const TICKS_PER_MS: u32 = 1000 * timer::TICKS_PER_US;
 
-/// Milliseconds since start, by the sampling timer; wraps after 49 days.
+static MILLISECONDS: AtomicU32 = AtomicU32::new(0);
+/// The timer's count at the beginning of this millisecond.
+static BEGAN: AtomicU32 = AtomicU32::new(0);
+
+/// Milliseconds since start, as of the last sampling interrupt; wraps after 49 days.
 pub fn milliseconds() -> u32 {
     MILLISECONDS.load(Ordering::Relaxed)
 }
 
-/// A millisecond has passed; called by the sampling timer's interrupt.
-pub(super) fn tick() {
+/// Counts the milliseconds that have passed; called by the alarm's interrupt, about once in each.
+#[inline(always)]
+pub(super) fn advance() {
+    let began = BEGAN.load(Ordering::Relaxed);
+    let passed = timer::now().wrapping_sub(began) / TICKS_PER_MS;
     // Only this interrupt writes, so load and store need not be one step.
-    MILLISECONDS.store(milliseconds().wrapping_add(1), Ordering::Relaxed);
+    BEGAN.store(began.wrapping_add(passed * TICKS_PER_MS), Ordering::Relaxed);
+    MILLISECONDS.store(milliseconds().wrapping_add(passed), Ordering::Relaxed);
+}
+
+/// Microseconds since start at the timer's count `now`, within the millisecond or behind it. Not to be interrupted by
+/// the alarm.
+pub(super) fn microseconds(now: u32) -> u64 {
+    let since = now.wrapping_sub(BEGAN.load(Ordering::Relaxed)) / timer::TICKS_PER_US;
+    u64::from(milliseconds()) * 1000 + u64::from(since)
 }
 
 /// Switches to the crystal and the PLL.
 ///
 /// The HAL waits without a limit for each step; should one never come, the watchdog, which is already
 /// running, starts the chip anew.
-pub fn start(mut dcb: DCB, mut dwt: DWT, mcg: pac::Mcg, osc: pac::Osc, sim: &pac::Sim) -> Clocks {
-    let clocks = mcg.constrain().freeze(osc, sim);
+pub fn start(mut dcb: DCB, mut dwt: DWT, mcg: pac::Mcg, osc: pac::Osc, sim: &pac::Sim) {
+    mcg.constrain().freeze(osc, sim);
     dcb.enable_trace();
     dwt.enable_cycle_counter();
-    clocks
 }
 
 /// A moment in the near future that bounds a wait.
@@ -71,6 +87,22 @@ pub fn sleep_unless(ready: impl FnOnce() -> bool) {
             cortex_m::asm::wfi();
         }
     });
+}
+
+/// Sleeps until `ready`, which an interrupt brings about; others wake the core for as short as can be.
+#[inline(always)]
+pub fn sleep_until(ready: impl Fn() -> bool) {
+    cortex_m::interrupt::disable();
+    while !ready() {
+        // A pending interrupt ends WFI even while it is masked, and is served in the gap.
+        cortex_m::asm::wfi();
+        // SAFETY: no critical section surrounds this.
+        unsafe { cortex_m::interrupt::enable() };
+        cortex_m::asm::isb();
+        cortex_m::interrupt::disable();
+    }
+    // SAFETY: as above.
+    unsafe { cortex_m::interrupt::enable() };
 }
 
 /// Waiting, once the millisecond timer runs.

@@ -1,7 +1,8 @@
 //! I2C0 as a master (K20 manual, chapter 46): SDA on pin 18 (PTB3), SCL on pin 19 (PTB2), 375 kHz.
 //!
 //! Two ways to use it: [`embedded_hal::i2c::I2c`] for setting the sensor up, which waits but never
-//! without a limit, and the single steps that the sampling interrupt is made of.
+//! without a limit, and the single steps that the sampling interrupts are made of. Those let DMA fetch
+//! all bytes of an answer but the last, for which the core has to set TXAK (chapter I2C, DMA support).
 
 use embedded_hal::i2c::{self, ErrorKind, ErrorType, NoAcknowledgeSource, Operation};
 use mk20dx_hal::pac;
@@ -20,7 +21,9 @@ const MST: u8 = 1 << 5;
 const TX: u8 = 1 << 4;
 const TXAK: u8 = 1 << 3;
 const RSTA: u8 = 1 << 2;
+const DMAEN: u8 = 1 << 0;
 
+const TCF: u8 = 1 << 7;
 const BUSY: u8 = 1 << 5;
 const ARBL: u8 = 1 << 4;
 const IICIF: u8 = 1 << 1;
@@ -56,6 +59,8 @@ pub enum Error {
     ArbitrationLost,
     /// A byte did not end in time: a line is held low.
     Timeout,
+    /// The transfer before has not ended.
+    Busy,
     /// SDA or SCL stays low whatever is done: a short, or no pull-ups.
     Stuck,
 }
@@ -66,7 +71,7 @@ impl i2c::Error for Error {
             Error::NoAddress => ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address),
             Error::NoData => ErrorKind::NoAcknowledge(NoAcknowledgeSource::Data),
             Error::ArbitrationLost => ErrorKind::ArbitrationLoss,
-            Error::Timeout | Error::Stuck => ErrorKind::Bus,
+            Error::Timeout | Error::Busy | Error::Stuck => ErrorKind::Bus,
         }
     }
 }
@@ -160,15 +165,18 @@ impl I2c {
         self.gpio.pdir().read().bits() >> pin & 1 != 0
     }
 
+    #[inline(always)]
     fn control(&mut self, bits: u8) {
         // SAFETY: C1 has no reserved combination among those used here.
         self.registers.c1().write(|w| unsafe { w.bits(bits) });
     }
 
+    #[inline(always)]
     fn status(&self) -> u8 {
         self.registers.s().read().bits()
     }
 
+    #[inline(always)]
     fn clear_flags(&mut self) {
         // SAFETY: IICIF and ARBL are cleared by writing them as 1; the rest of S is read-only.
         self.registers
@@ -177,17 +185,20 @@ impl I2c {
     }
 
     /// Puts a byte on the bus; its end is signalled by the interrupt flag.
+    #[inline(always)]
     pub(super) fn put(&mut self, byte: u8) {
         // SAFETY: D takes any byte.
         self.registers.d().write(|w| unsafe { w.bits(byte) });
     }
 
     /// Takes the last byte received; while receiving this also starts the next.
-    fn get(&mut self) -> u8 {
+    #[inline(always)]
+    pub(super) fn get(&mut self) -> u8 {
         self.registers.d().read().bits()
     }
 
     /// START and address, with the interrupt on or off.
+    #[inline(always)]
     pub(super) fn begin(&mut self, address: u8, interrupt: bool) {
         let interrupt = if interrupt { IICIE } else { 0 };
         self.clear_flags();
@@ -196,6 +207,7 @@ impl I2c {
     }
 
     /// Repeated START and address.
+    #[inline(always)]
     pub(super) fn begin_again(&mut self, address: u8, interrupt: bool) {
         let interrupt = if interrupt { IICIE } else { 0 };
         self.control(IICEN | interrupt | MST | TX | RSTA);
@@ -203,6 +215,7 @@ impl I2c {
     }
 
     /// After an acknowledged read address: turns round and clocks the first of `count` bytes.
+    #[inline(always)]
     pub(super) fn receive_first(&mut self, count: usize, interrupt: bool) {
         let interrupt = if interrupt { IICIE } else { 0 };
         let refuse = if count == 1 { TXAK } else { 0 };
@@ -212,6 +225,7 @@ impl I2c {
 
     /// A byte has come in and `remaining` more are wanted: takes it and sees to it that the last byte
     /// is refused, and that no byte follows it.
+    #[inline(always)]
     pub(super) fn receive_next(&mut self, remaining: usize, interrupt: bool) -> u8 {
         let interrupt = if interrupt { IICIE } else { 0 };
         match remaining {
@@ -224,18 +238,41 @@ impl I2c {
 
     /// The last byte has come in and was refused: takes it without giving the bus away, for another
     /// address to follow at once.
+    #[inline(always)]
     pub(super) fn receive_last_and_hold(&mut self) -> u8 {
         // Turning back to sending keeps the bus without clocking another byte.
         self.control(IICEN | MST | TX);
         self.get()
     }
 
+    /// From here on DMA takes the bytes that come in. To be called while one is on its way.
+    #[inline(always)]
+    pub(super) fn hand_to_dma(&mut self) {
+        self.control(IICEN | IICIE | MST | DMAEN);
+    }
+
+    /// The byte that is on its way is the last: takes it from DMA, and refuses it. True if that was too
+    /// late, and it has come and was acknowledged: then another has to be read and refused.
+    #[inline(always)]
+    pub(super) fn refuse_last(&mut self) -> bool {
+        // DMA leaves the interrupt's flag as it is, which would interrupt once DMAEN is gone.
+        self.clear_flags();
+        self.control(IICEN | IICIE | MST | TXAK);
+        let late = self.status() & TCF != 0;
+        if late {
+            self.clear_flags();
+        }
+        late
+    }
+
     /// STOP.
+    #[inline(always)]
     pub(super) fn stop(&mut self) {
         self.control(IICEN);
     }
 
     /// Whether a byte has ended, and how; clears the flag.
+    #[inline(always)]
     pub(super) fn byte_done(&mut self) -> Option<Result<(), Error>> {
         let status = self.status();
         if status & IICIF == 0 {

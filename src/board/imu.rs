@@ -1,26 +1,32 @@
 //! The sensor on its bus: set up while the program waits, sampled by interrupt ever after
 //! (`sampling`).
 
+mod frames;
+
+mod job;
+
+mod reader;
+
 mod sampling;
 
 use core::fmt;
 
 use embedded_hal::delay::DelayNs;
-use mk20dx_hal::clocks::Clocks;
-use mk20dx_hal::pac;
-use mk20dx_hal::timer::PitExt;
 use vrduino::imu::magnetometer::polling::{Loss, Polling};
 use vrduino::imu::magnetometer::{self, MagnetometerError};
 use vrduino::imu::{self, ImuError};
+use vrduino::sampling::Timing;
 use vrduino::sensor::RawSample;
 use vrduino::sensor::magnetometer::{RawField, SensitivityAdjustment};
 
 use super::clock::{self, Time};
+use super::dma::Dma;
 use super::i2c::{Error, I2c};
+use super::timer::Alarm;
 use super::watchdog::Watchdog;
-use sampling::Samples;
+use sampling::{Outcome, Samples};
 
-pub use sampling::counts;
+pub use sampling::{counts, lock_on};
 
 /// The sensor may take 100 ms from power-on to its first answer (data sheet, table 3).
 const START_UP_TRIES: u32 = 12;
@@ -35,7 +41,7 @@ const TOLERATED_REPEATS: u32 = 100;
 const TOLERATED_FORCE: u32 = 200;
 /// 4 g in counts at ±16 g, squared. Nobody is shaken that hard for a fifth of a second; a sensor that
 /// lost its supply and came back at ±2 g shows 8 g at rest.
-const IMPLAUSIBLE: i64 = (4 * 2048) * (4 * 2048);
+const IMPLAUSIBLE: u32 = (4 * 2048) * (4 * 2048);
 
 /// What the factory found out about the magnetometer, or why there is none.
 pub type Compass = Result<SensitivityAdjustment, MagnetometerError<Error>>;
@@ -74,27 +80,23 @@ pub struct Imu {
     /// The bus, while it is not in the interrupts' hands.
     bus: Option<I2c>,
     samples: Samples,
-    last: RawSample,
+    /// The last sample.
+    pub sample: RawSample,
+    /// When it was ready.
+    pub timing: Timing,
     failures: u32,
     repeats: u32,
     forces: u32,
 }
 
 impl Imu {
-    /// Takes bus and timer, and starts the timer: from here on milliseconds are counted.
-    pub fn new(
-        registers: pac::I2c0,
-        port: pac::Portb,
-        gpio: pac::Ptb,
-        pit: pac::Pit,
-        sim: &pac::Sim,
-        clocks: &Clocks,
-    ) -> Imu {
-        let samples = sampling::start(pit.split(sim, clocks).ch0);
+    /// Takes the bus and what serves it, and sets the alarm: from here on milliseconds are counted.
+    pub fn new(bus: I2c, dma: Dma, alarm: Alarm) -> Imu {
         Imu {
-            bus: Some(I2c::new(registers, port, gpio, sim)),
-            samples,
-            last: RawSample::default(),
+            bus: Some(bus),
+            samples: sampling::start(alarm, dma),
+            sample: RawSample::default(),
+            timing: Timing::default(),
             failures: 0,
             repeats: 0,
             forces: 0,
@@ -119,50 +121,51 @@ impl Imu {
         Ok(compass)
     }
 
-    /// Sleeps until the next burst has come in, or has failed and is bridged. Now and then the
-    /// magnetometer has measured since the one before; that it is lost is said once.
-    pub fn next_sample(&mut self) -> Result<(RawSample, Option<Result<RawField, Loss>>), Fault> {
-        let sampled = loop {
-            if let Some(sampled) = self.samples.dequeue() {
-                break sampled;
-            }
-            clock::sleep_unless(|| self.samples.ready());
+    /// Sleeps until the next burst has come in, or has failed and is bridged: see [`Imu::sample`] and [`Imu::timing`].
+    /// Now and then the magnetometer has measured since the one before; that it is lost is said once.
+    #[inline(always)]
+    pub fn next_sample(&mut self) -> Result<Option<Result<RawField, Loss>>, Fault> {
+        clock::sleep_until(|| self.samples.ready());
+        let Some(sampled) = self.samples.peek() else {
+            return Ok(None);
         };
-        let sample = match sampled.burst {
-            Ok(burst) => {
+        self.sample = match sampled.outcome {
+            Outcome::New => sampled.bytes.sample(),
+            Outcome::Nothing | Outcome::Failed(_) => self.sample.repeated(),
+        };
+        self.timing = sampled.timing;
+        let (outcome, field) = (sampled.outcome, sampled.field);
+        // It was looked at where it lies.
+        let _ = self.samples.dequeue();
+        self.check(outcome)?;
+        Ok(field)
+    }
+
+    /// Whether the sensor can be believed.
+    #[inline(always)]
+    fn check(&mut self, outcome: Outcome) -> Result<(), Fault> {
+        match outcome {
+            Outcome::New => (self.failures, self.repeats) = (0, 0),
+            Outcome::Nothing => {
                 self.failures = 0;
-                RawSample::from_burst(&burst)
+                self.repeats += 1;
+                if self.repeats > TOLERATED_REPEATS {
+                    return Err(Fault::Frozen);
+                }
             }
-            Err(error) => {
+            Outcome::Failed(error) => {
                 self.failures += 1;
                 if self.failures > TOLERATED_FAILURES {
                     return Err(Fault::Lost(error));
                 }
-                RawSample {
-                    fresh: false,
-                    ..self.last
-                }
             }
-        };
-        self.check(&sample)?;
-        self.last = sample;
-        Ok((sample, sampled.field))
-    }
-
-    fn check(&mut self, sample: &RawSample) -> Result<(), Fault> {
-        let repeats = *sample
-            == RawSample {
-                fresh: false,
-                ..self.last
-            };
-        self.repeats = if repeats { self.repeats + 1 } else { 0 };
-        if self.repeats > TOLERATED_REPEATS {
-            return Err(Fault::Frozen);
         }
-        let force: i64 = sample
+        // Full scale on three axes is less than 2^32.
+        let force: u32 = self
+            .sample
             .accel
             .iter()
-            .map(|&count| i64::from(count).pow(2))
+            .map(|&count| u32::from(count.unsigned_abs()).pow(2))
             .sum();
         self.forces = if force > IMPLAUSIBLE {
             self.forces + 1

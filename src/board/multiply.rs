@@ -6,6 +6,9 @@ use core::arch::asm;
 use vrduino::fixed::multiply::Multiply;
 
 /// By the instructions of the Cortex-M4's DSP extension, one for each operation.
+///
+/// None is marked `pure`: the compiler leaves them in the order in which they are written, and that
+/// order keeps fewer values waiting on the stack than its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instructions;
 
@@ -15,7 +18,7 @@ impl Multiply for Instructions {
         let result;
         // SAFETY: it reads two registers and writes one; no flag, no memory.
         unsafe {
-            asm!("smmulr {}, {}, {}", lateout(reg) result, in(reg) a, in(reg) b, options(pure, nomem, nostack, preserves_flags));
+            asm!("smmulr {}, {}, {}", lateout(reg) result, in(reg) a, in(reg) b, options(nomem, nostack, preserves_flags));
         }
         result
     }
@@ -25,7 +28,7 @@ impl Multiply for Instructions {
         let (mut lower, mut upper) = (sum as u32, (sum >> 32) as i32);
         // SAFETY: it reads four registers and writes two of them; no flag, no memory.
         unsafe {
-            asm!("smlal {}, {}, {}, {}", inlateout(reg) lower, inlateout(reg) upper, in(reg) a, in(reg) b, options(pure, nomem, nostack, preserves_flags));
+            asm!("smlal {}, {}, {}, {}", inlateout(reg) lower, inlateout(reg) upper, in(reg) a, in(reg) b, options(nomem, nostack, preserves_flags));
         }
         i64::from(upper) << 32 | i64::from(lower)
     }
@@ -35,7 +38,7 @@ impl Multiply for Instructions {
         let result;
         // SAFETY: as above, with one more; no flag, no memory.
         unsafe {
-            asm!("smmlar {}, {}, {}, {}", lateout(reg) result, in(reg) a, in(reg) b, in(reg) sum, options(pure, nomem, nostack, preserves_flags));
+            asm!("smmlar {}, {}, {}, {}", lateout(reg) result, in(reg) a, in(reg) b, in(reg) sum, options(nomem, nostack, preserves_flags));
         }
         result
     }
@@ -45,7 +48,7 @@ impl Multiply for Instructions {
         let result;
         // SAFETY: as above.
         unsafe {
-            asm!("smmlsr {}, {}, {}, {}", lateout(reg) result, in(reg) a, in(reg) b, in(reg) sum, options(pure, nomem, nostack, preserves_flags));
+            asm!("smmlsr {}, {}, {}, {}", lateout(reg) result, in(reg) a, in(reg) b, in(reg) sum, options(nomem, nostack, preserves_flags));
         }
         result
     }

@@ -1,18 +1,20 @@
-//! The serial port: lines out, keys in, and nothing that ever waits for the host.
+//! The serial port: frames out, keys in, and nothing that ever waits for the host.
 //!
-//! The main program puts whole lines into a queue and takes keys out of another; the USB interrupt
-//! does the rest. A line that finds the queue full is dropped and counted.
+//! The main program gives a frame, a line or a binary one, to the controller at once and as one packet, if that is
+//! free; else the frame waits, and the USB interrupt gives it when the packet before has gone. A frame that finds no
+//! room to wait is dropped and counted.
 
 mod buffers;
 mod bus;
 mod descriptors;
 mod endpoints;
+mod outbox;
+mod shortcuts;
 
-use core::cell::RefCell;
+use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use cortex_m::peripheral::NVIC;
-use critical_section::Mutex;
 use heapless::spsc::{Consumer, Producer, Queue};
 use mk20dx_hal::interrupt;
 use mk20dx_hal::pac::{self, Interrupt};
@@ -20,16 +22,13 @@ use usb_device::bus::UsbBusAllocator;
 use usb_device::device::{UsbDevice, UsbDeviceState};
 use usbd_serial::CdcAcmClass;
 use vrduino::command::{Command, Parser};
-use vrduino::wire::Line;
 
 use super::breadcrumb::{self, Stage};
 use super::loader;
+use super::timer;
 use bus::Bus;
+use outbox::Outbox;
 
-/// Lines that may wait for the host: an INFO block with a verdict on the bias is twelve at once. At the
-/// default rate these are 160 ms, so a host which comes back soon has missed nothing, and one which
-/// comes back later gets little that is old.
-const WAITING_LINES: usize = 16;
 /// Keys that may wait for the main program.
 const WAITING_KEYS: usize = 64;
 /// A packet shorter than the endpoint's 64 bytes ends a transfer by itself.
@@ -37,22 +36,35 @@ const PACKET: usize = 63;
 /// Below sampling (0x40).
 const PRIORITY: u8 = 0x80;
 
-static PORT: Mutex<RefCell<Option<Port>>> = Mutex::new(RefCell::new(None));
 /// Under a name that survives optimisation, so that the emulator can report it.
 // SAFETY: no other item has this name.
 #[unsafe(export_name = "vrduino_dropped_lines")]
 static DROPPED_LINES: AtomicU32 = AtomicU32::new(0);
 static OPENED: AtomicBool = AtomicBool::new(false);
+/// When the last frame began, by the board's clock; only while frames are followed.
+static FRAME: AtomicU32 = AtomicU32::new(0);
 static LOADER_ASKED: AtomicBool = AtomicBool::new(false);
+
+/// The interrupt's end of the port.
+struct Shared(UnsafeCell<Option<&'static mut Port>>);
+
+// SAFETY: it is accessed in the USB interrupt, and in `Usb::with_port` while that is masked.
+unsafe impl Sync for Shared {}
+
+static PORT: Shared = Shared(UnsafeCell::new(None));
 
 /// Lines that found no room since start.
 pub fn dropped_lines() -> u32 {
     DROPPED_LINES.load(Ordering::Relaxed)
 }
 
+/// When the host's last frame began, by the board's clock; only while frames are followed.
+pub fn last_frame() -> u32 {
+    FRAME.load(Ordering::Relaxed)
+}
+
 /// The main program's end of the serial port.
 pub struct Usb {
-    lines: Producer<'static, Line>,
     keys: Consumer<'static, u8>,
     parser: Parser,
 }
@@ -60,46 +72,75 @@ pub struct Usb {
 impl Usb {
     /// Switches USB on; the host sees the board from here on.
     pub fn new(registers: pac::Usb0, sim: &pac::Sim) -> Usb {
-        let lines = cortex_m::singleton!(: Queue<Line, { WAITING_LINES + 1 }> = Queue::new())
-            .expect("the board is taken once");
         let keys = cortex_m::singleton!(: Queue<u8, { WAITING_KEYS + 1 }> = Queue::new())
             .expect("the board is taken once");
+        let outbox =
+            cortex_m::singleton!(: Outbox = Outbox::new()).expect("the board is taken once");
         let bus = Bus::new(registers, sim);
         let allocator = cortex_m::singleton!(: UsbBusAllocator<Bus> = UsbBusAllocator::new(bus))
             .expect("the board is taken once");
-        let ((lines, lines_out), (keys_in, keys)) = (lines.split(), keys.split());
+        let (keys_in, keys) = keys.split();
         let class = CdcAcmClass::new(allocator, 64);
         let device = descriptors::device(allocator, sim);
         let port = Port {
             device,
             class,
-            lines: lines_out,
+            waiting: outbox,
             keys: keys_in,
-            current: None,
             open: false,
         };
-        critical_section::with(|cs| PORT.replace(cs, Some(port)));
+        let port = cortex_m::singleton!(: Port = port).expect("the board is taken once");
+        // SAFETY: the interrupt is not enabled yet.
+        unsafe { *PORT.0.get() = Some(port) };
         super::enable_interrupt(Interrupt::USB0, PRIORITY);
         Usb {
-            lines,
             keys,
             parser: Parser::new(),
         }
     }
 
-    /// Sends a line, or drops and counts it.
-    pub fn send(&mut self, line: &Line) {
-        if self.lines.enqueue(line.clone()).is_err() {
+    /// Sends a frame of at most 255 bytes, in one packet if it has at most 63, or drops and counts it.
+    pub fn send(&mut self, frame: &(impl AsRef<[u8]> + ?Sized)) {
+        self.send_bytes(frame.as_ref());
+    }
+
+    #[inline(never)]
+    fn send_bytes(&mut self, frame: &[u8]) {
+        if self.with_port(|port| port.send(frame)) != Some(true) {
             DROPPED_LINES.store(dropped_lines().wrapping_add(1), Ordering::Relaxed);
         }
-        NVIC::pend(Interrupt::USB0);
+    }
+
+    /// Takes down when each frame of the host begins, or no longer does.
+    pub fn follow_frames(&mut self, on: bool) {
+        self.with_port(|port| port.device.bus().follow_frames(on));
+    }
+
+    #[inline(always)]
+    fn with_port<T>(&mut self, work: impl FnOnce(&mut Port) -> T) -> Option<T> {
+        NVIC::mask(Interrupt::USB0);
+        // From here on the interrupt does not come (ARMv7-M, B3.4.1).
+        cortex_m::asm::dsb();
+        cortex_m::asm::isb();
+        // SAFETY: the interrupt is masked, and nobody else has a reference.
+        let port = unsafe { &mut *PORT.0.get() };
+        let result = port.as_mut().map(|port| work(port));
+        // SAFETY: no critical section depends on it.
+        unsafe { NVIC::unmask(Interrupt::USB0) };
+        result
     }
 
     /// The next command the host has typed. To be asked until there is none, once a millisecond.
     pub fn command(&mut self) -> Option<Command> {
-        if self.keys.peek().is_none() {
+        if !self.keys.ready() {
             self.parser.idle();
+            return None;
         }
+        self.read_keys()
+    }
+
+    #[inline(never)]
+    fn read_keys(&mut self) -> Option<Command> {
         while let Some(key) = self.keys.dequeue() {
             if let Some(command) = self.parser.push(key) {
                 return Some(command);
@@ -109,13 +150,17 @@ impl Usb {
     }
 
     /// Whether the host has opened the port since this was last asked.
+    #[inline(always)]
     pub fn was_opened(&mut self) -> bool {
         let opened = OPENED.load(Ordering::Relaxed);
-        OPENED.store(false, Ordering::Relaxed);
+        if opened {
+            OPENED.store(false, Ordering::Relaxed);
+        }
         opened
     }
 
     /// Whether the host has asked for the board's loader.
+    #[inline(always)]
     pub fn loader_asked(&self) -> bool {
         LOADER_ASKED.load(Ordering::Relaxed)
     }
@@ -125,16 +170,42 @@ impl Usb {
 struct Port {
     device: UsbDevice<'static, Bus>,
     class: CdcAcmClass<'static, Bus>,
-    lines: Consumer<'static, Line>,
+    waiting: &'static mut Outbox,
     keys: Producer<'static, u8>,
-    /// The line on its way and how much of it is gone.
-    current: Option<(Line, usize)>,
     /// DTR, as it was last.
     open: bool,
 }
 
 impl Port {
+    /// Gives the frame to the controller, or lets it wait; false if it can do neither.
+    fn send(&mut self, frame: &[u8]) -> bool {
+        let at_once = self.waiting.is_empty()
+            && frame.len() <= PACKET
+            && self.device.state() == UsbDeviceState::Configured;
+        if at_once && self.class.write_packet(frame).is_ok() {
+            return true;
+        }
+        let taken = self.waiting.push(frame);
+        self.give_waiting();
+        taken
+    }
+
     fn service(&mut self) {
+        if self.device.bus().take_frame() {
+            FRAME.store(timer::now(), Ordering::Relaxed);
+            if self.device.bus().is_quiet() {
+                return;
+            }
+        }
+        // Mostly, a packet has gone, which concerns nobody but the next.
+        if !self.device.bus().take_sent() {
+            self.service_all();
+        }
+        self.give_waiting();
+    }
+
+    #[inline(never)]
+    fn service_all(&mut self) {
         while self.device.poll(&mut [&mut self.class]) {}
         if self.class.line_coding().data_rate() == loader::BAUD {
             LOADER_ASKED.store(true, Ordering::Relaxed);
@@ -142,11 +213,10 @@ impl Port {
         self.take_keys();
         if self.device.state() == UsbDeviceState::Configured {
             self.notice_opening();
-            self.give_lines();
         } else {
             self.open = false;
             // The rest of a line makes no sense to the next host.
-            self.current = None;
+            self.waiting.drop_begun();
         }
     }
 
@@ -165,28 +235,25 @@ impl Port {
     fn notice_opening(&mut self) {
         let open = self.class.dtr();
         if open && !self.open {
-            while self.lines.dequeue().is_some() {}
+            self.waiting.clear();
             OPENED.store(true, Ordering::Relaxed);
         }
         self.open = open;
     }
 
-    fn give_lines(&mut self) {
+    /// Gives what waits to the controller, as far as it takes it.
+    fn give_waiting(&mut self) {
+        if self.waiting.is_empty() || self.device.state() != UsbDeviceState::Configured {
+            return;
+        }
+        let mut packet = [0; PACKET];
         loop {
-            if self.current.is_none() {
-                self.current = self.lines.dequeue().map(|line| (line, 0));
-            }
-            let Some((line, sent)) = &mut self.current else {
+            let count = self.waiting.peek(&mut packet);
+            let Some(packet) = packet.get(..count).filter(|packet| !packet.is_empty()) else {
                 return;
             };
-            let rest = line.as_bytes().get(*sent..).unwrap_or_default();
-            if rest.is_empty() {
-                self.current = None;
-                continue;
-            }
-            let packet = rest.get(..PACKET).unwrap_or(rest);
             match self.class.write_packet(packet) {
-                Ok(count) => *sent += count,
+                Ok(count) => self.waiting.take(count),
                 // The packet before is still there; the interrupt that reports its end comes back here.
                 Err(_) => return,
             }
@@ -196,14 +263,10 @@ impl Port {
 
 #[cortex_m_rt::interrupt]
 fn USB0() {
-    static mut SERVED: Option<Port> = None;
     breadcrumb::during(Stage::UsbInterrupt, || {
-        // Moved here at the first interrupt, so that serving it needs no critical section and sampling
-        // is never held up.
-        if SERVED.is_none() {
-            *SERVED = critical_section::with(|cs| PORT.take(cs));
-        }
-        if let Some(port) = SERVED {
+        // SAFETY: the main program has no reference while this interrupt is not masked.
+        let port = unsafe { &mut *PORT.0.get() };
+        if let Some(port) = port {
             port.service();
         }
     });

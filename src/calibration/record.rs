@@ -20,7 +20,6 @@ use super::six_positions::Accelerometer;
 use super::{Correction, GyroBias, Rest};
 use crate::units::{Angle, AngularRate, MagneticField, SpecificForce};
 use core::fmt;
-use core::ops::RangeInclusive;
 use nalgebra::{Matrix3, Vector3};
 
 /// Bytes of a record.
@@ -30,12 +29,56 @@ const BODY: usize = 136;
 const MAGIC: [u8; 2] = *b"VC";
 const VERSION: u8 = 1;
 
-const GYRO: u8 = 1 << 0;
-const ACCELEROMETER: u8 = 1 << 1;
-const MAGNETOMETER: u8 = 1 << 2;
+/// One of the three results: where it lies, and what its numbers can be.
+struct Part {
+    /// In byte 3.
+    bit: u8,
+    start: usize,
+    /// So many numbers one after the other, from and to.
+    limits: &'static [(u8, f32, f32)],
+}
 
+// Whatever made the record, a sensor that works has nothing beyond these: wider than what the procedures
+// accept, far narrower than what would stop a picture.
+const GYRO: Part = Part {
+    bit: 1 << 0,
+    start: 4,
+    limits: &[(3, -0.35, 0.35), ANY],
+};
+const ACCELEROMETER: Part = Part {
+    bit: 1 << 1,
+    start: 20,
+    limits: &[
+        (3, -3.0, 3.0),
+        (1, 0.8, 1.25),
+        (3, -0.1, 0.1),
+        (1, 0.8, 1.25),
+        (3, -0.1, 0.1),
+        (1, 0.8, 1.25),
+        (1, 0.0, 0.2),
+        ANY,
+        ANY,
+    ],
+};
+const MAGNETOMETER: Part = Part {
+    bit: 1 << 2,
+    start: 80,
+    limits: &[
+        (3, -2000.0, 2000.0),
+        (1, 0.3, 3.0),
+        (2, -1.0, 1.0),
+        (1, 0.3, 3.0),
+        (1, -1.0, 1.0),
+        (1, 0.3, 3.0),
+        (1, 20.0, 70.0),
+        (1, 0.0, 10.0),
+        (1, 0.0, 1.0),
+        ANY,
+        ANY,
+    ],
+};
 /// No value of any calibration is larger, in any unit used here.
-const LARGEST: f32 = 10_000.0;
+const ANY: (u8, f32, f32) = (1, -10_000.0, 10_000.0);
 
 /// The gyro's bias with what was noted beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,40 +183,32 @@ impl Record {
         let mut bytes = [0; LENGTH];
         bytes[..2].copy_from_slice(&MAGIC);
         bytes[2] = VERSION;
-        let Self {
-            gyro,
-            accelerometer,
-            magnetometer,
-        } = self;
-        if let Some(gyro) = gyro {
-            bytes[3] |= GYRO;
-            let bias = gyro.bias.rad_per_s();
-            let values = bias.iter().chain([&gyro.temperature_celsius]);
-            write(&mut bytes[4..20], values);
+        if let Some(gyro) = &self.gyro {
+            let mut part = Writer::new(&mut bytes, GYRO);
+            part.vector(&gyro.bias.rad_per_s());
+            part.number(gyro.temperature_celsius);
         }
-        if let Some(result) = accelerometer {
-            bytes[3] |= ACCELEROMETER;
-            let (bias, rows) = (result.bias.m_per_s2(), result.matrix.transpose());
-            let placing = result.placing.rad();
-            let figures = [&result.residual, &placing, &result.temperature_celsius];
-            write(&mut bytes[20..80], bias.iter().chain(&rows).chain(figures));
+        if let Some(result) = &self.accelerometer {
+            let mut part = Writer::new(&mut bytes, ACCELEROMETER);
+            part.vector(&result.bias.m_per_s2());
+            for row in 0..3 {
+                part.vector(&result.matrix.row(row).transpose());
+            }
+            part.number(result.residual);
+            part.number(result.placing.rad());
+            part.number(result.temperature_celsius);
         }
-        if let Some(result) = magnetometer {
-            bytes[3] |= MAGNETOMETER;
-            let (hard, soft) = (result.hard_iron.microtesla(), &result.soft_iron);
-            let soft = [0, 1, 2, 4, 5, 8].map(|element| soft[element]);
-            let hole = result.largest_hole.rad();
-            let figures = [
-                &result.strength_microtesla,
-                &result.error_percent,
-                &result.coverage,
-                &hole,
-                &result.temperature_celsius,
-            ];
-            write(
-                &mut bytes[80..BODY],
-                hard.iter().chain(&soft).chain(figures),
-            );
+        if let Some(result) = &self.magnetometer {
+            let mut part = Writer::new(&mut bytes, MAGNETOMETER);
+            part.vector(&result.hard_iron.microtesla());
+            for element in [0, 1, 2, 4, 5, 8] {
+                part.number(result.soft_iron[element]);
+            }
+            part.number(result.strength_microtesla);
+            part.number(result.error_percent);
+            part.number(result.coverage);
+            part.number(result.largest_hole.rad());
+            part.number(result.temperature_celsius);
         }
         let checksum = crc32(&bytes[..BODY]);
         bytes[BODY..].copy_from_slice(&checksum.to_le_bytes());
@@ -213,101 +248,106 @@ impl Record {
             return Err(RecordError::Checksum { stored, computed });
         }
         let parts = body[3];
-        if parts & !(GYRO | ACCELEROMETER | MAGNETOMETER) != 0 {
+        if parts & !(GYRO.bit | ACCELEROMETER.bit | MAGNETOMETER.bit) != 0 {
             return Err(RecordError::UnknownPart(parts));
         }
+        let part = |part: Part| Reader::of(body, &part);
         Ok(Self {
-            gyro: (parts & GYRO != 0).then(|| gyro(body)).transpose()?,
-            accelerometer: (parts & ACCELEROMETER != 0)
-                .then(|| accelerometer(body))
-                .transpose()?,
-            magnetometer: (parts & MAGNETOMETER != 0)
-                .then(|| magnetometer(body))
-                .transpose()?,
+            gyro: part(GYRO)?.map(gyro),
+            accelerometer: part(ACCELEROMETER)?.map(accelerometer),
+            magnetometer: part(MAGNETOMETER)?.map(magnetometer),
         })
     }
 }
 
-fn gyro(body: &[u8]) -> Result<Gyro, RecordError> {
-    let [x, y, z, temperature_celsius] = values(body, 4)?;
-    plausible([x, y, z], -0.35..=0.35, 4)?;
-    Ok(Gyro {
-        bias: AngularRate::from_rad_per_s(Vector3::new(x, y, z)),
-        temperature_celsius,
-    })
+fn gyro(mut part: Reader<'_>) -> Gyro {
+    Gyro {
+        bias: AngularRate::from_rad_per_s(part.vector()),
+        temperature_celsius: part.number(),
+    }
 }
 
-fn accelerometer(body: &[u8]) -> Result<Accelerometer<f32>, RecordError> {
-    let bias: [f32; 3] = values(body, 20)?;
-    let matrix: [f32; 9] = values(body, 32)?;
-    let [residual, placing, temperature_celsius] = values(body, 68)?;
-    plausible(bias, -3.0..=3.0, 20)?;
-    let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = matrix;
-    plausible([xx, yy, zz], 0.8..=1.25, 32)?;
-    plausible([xy, xz, yx, yz, zx, zy], -0.1..=0.1, 36)?;
-    plausible([residual], 0.0..=0.2, 68)?;
-    Ok(Accelerometer {
-        bias: SpecificForce::from_m_per_s2(bias.into()),
-        matrix: Matrix3::from_row_slice(&matrix),
-        residual,
-        placing: Angle::from_rad(placing),
-        temperature_celsius,
-    })
+fn accelerometer(mut part: Reader<'_>) -> Accelerometer<f32> {
+    Accelerometer {
+        bias: SpecificForce::from_m_per_s2(part.vector()),
+        matrix: Matrix3::from_columns(&[part.vector(), part.vector(), part.vector()]).transpose(),
+        residual: part.number(),
+        placing: Angle::from_rad(part.number()),
+        temperature_celsius: part.number(),
+    }
 }
 
-fn magnetometer(body: &[u8]) -> Result<Magnetometer<f32>, RecordError> {
-    let hard: [f32; 3] = values(body, 80)?;
-    let [xx, xy, xz, yy, yz, zz] = values(body, 92)?;
-    let [strength, error, coverage, hole, temperature_celsius] = values(body, 116)?;
-    plausible(hard, -2000.0..=2000.0, 80)?;
-    plausible([xx, yy, zz], 0.3..=3.0, 92)?;
-    plausible([xy, xz, yz], -1.0..=1.0, 96)?;
-    plausible([strength], 20.0..=70.0, 116)?;
-    plausible([error], 0.0..=10.0, 120)?;
-    plausible([coverage], 0.0..=1.0, 124)?;
-    Ok(Magnetometer {
-        hard_iron: MagneticField::from_microtesla(hard.into()),
+fn magnetometer(mut part: Reader<'_>) -> Magnetometer<f32> {
+    let hard_iron = MagneticField::from_microtesla(part.vector());
+    let [xx, xy, xz]: [f32; 3] = part.vector().into();
+    let [yy, yz, zz]: [f32; 3] = part.vector().into();
+    Magnetometer {
+        hard_iron,
         soft_iron: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-        strength_microtesla: strength,
-        error_percent: error,
-        coverage,
-        largest_hole: Angle::from_rad(hole),
-        temperature_celsius,
-    })
-}
-
-/// Whatever made the record, a sensor that works has nothing beyond these: wider than what the
-/// procedures accept, far narrower than what would stop a picture.
-fn plausible<const N: usize>(
-    values: [f32; N],
-    range: RangeInclusive<f32>,
-    offset: usize,
-) -> Result<(), RecordError> {
-    if values.iter().all(|value| range.contains(value)) {
-        return Ok(());
-    }
-    Err(RecordError::Value { offset })
-}
-
-fn write<'a>(bytes: &mut [u8], values: impl Iterator<Item = &'a f32>) {
-    for (bytes, value) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(values) {
-        *bytes = value.to_le_bytes();
+        strength_microtesla: part.number(),
+        error_percent: part.number(),
+        coverage: part.number(),
+        largest_hole: Angle::from_rad(part.number()),
+        temperature_celsius: part.number(),
     }
 }
 
-fn values<const N: usize>(body: &[u8], start: usize) -> Result<[f32; N], RecordError> {
-    let words = body.get(start..).unwrap_or_default().as_chunks::<4>().0;
-    let mut values = [0.0; N];
-    for (index, (value, bytes)) in values.iter_mut().zip(words).enumerate() {
-        *value = f32::from_le_bytes(*bytes);
-        // Written so that what is not a number is not within.
-        let within = value.abs() <= LARGEST;
-        if !within {
-            let offset = start + 4 * index;
-            return Err(RecordError::Value { offset });
+/// Puts one number behind the other.
+struct Writer<'a>(core::slice::IterMut<'a, [u8; 4]>);
+
+impl<'a> Writer<'a> {
+    fn new(bytes: &'a mut [u8; LENGTH], part: Part) -> Self {
+        bytes[3] |= part.bit;
+        Self(bytes[part.start..].as_chunks_mut().0.iter_mut())
+    }
+
+    fn number(&mut self, value: f32) {
+        if let Some(bytes) = self.0.next() {
+            *bytes = value.to_le_bytes();
         }
     }
-    Ok(values)
+
+    fn vector(&mut self, vector: &Vector3<f32>) {
+        vector.iter().for_each(|&value| self.number(value));
+    }
+}
+
+/// Takes one number behind the other.
+struct Reader<'a>(core::slice::Iter<'a, [u8; 4]>);
+
+impl<'a> Reader<'a> {
+    /// At the beginning of a part, if it is there.
+    ///
+    /// # Errors
+    ///
+    /// A number in it is beyond its limits, or is none.
+    fn of(body: &'a [u8], part: &Part) -> Result<Option<Self>, RecordError> {
+        if body[3] & part.bit == 0 {
+            return Ok(None);
+        }
+        let start = Self(body[part.start..].as_chunks().0.iter());
+        let mut numbers = Self(start.0.clone());
+        let mut offset = part.start;
+        for &(count, least, greatest) in part.limits {
+            for _ in 0..count {
+                if !(least..=greatest).contains(&numbers.number()) {
+                    return Err(RecordError::Value { offset });
+                }
+                offset += 4;
+            }
+        }
+        Ok(Some(start))
+    }
+
+    fn number(&mut self) -> f32 {
+        self.0
+            .next()
+            .map_or(0.0, |bytes| f32::from_le_bytes(*bytes))
+    }
+
+    fn vector(&mut self) -> Vector3<f32> {
+        Vector3::new(self.number(), self.number(), self.number())
+    }
 }
 
 /// CRC-32/ISO-HDLC. A bit at a time: it runs at start and when something is kept.

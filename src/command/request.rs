@@ -4,7 +4,10 @@ use core::fmt;
 use heapless::String;
 
 use super::number;
+use crate::sampling::Lock;
 use crate::wire::Decimals;
+
+pub use super::setting::Setting;
 
 /// A line understood.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,9 +36,44 @@ pub enum Request {
     Forget,
     /// `:decimals` asks, `:decimals 3` to `:decimals 6` choose: of a quaternion in the stream.
     Decimals(Option<Decimals>),
+    /// `:stream` asks, `:stream text`, `:stream timed`, `:stream binary` and `:stream counts` choose.
+    Stream(Option<Format>),
+    /// `:every` asks, `:every 1` to `:every 1000` choose: how many samples lead to one line or frame.
+    Every(Option<u16>),
     /// `:bias`: what the gyro reads at rest, and how that is known.
     Bias,
+    /// `:lock` asks, `:lock sensor` and `:lock usb` choose: what decides when the sensor is read.
+    Lock(Option<Lock>),
 }
+
+/// How the fused orientation is put on the wire.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Format {
+    /// The course's line.
+    #[default]
+    Text,
+    /// The same with a sequence number, the time and a checksum.
+    Timed,
+    /// A frame.
+    Binary,
+    /// A frame, and in the same packet one of the sensor's counts.
+    Counts,
+}
+
+impl Format {
+    /// As it is typed.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Text => "text",
+            Self::Timed => "timed",
+            Self::Binary => "binary",
+            Self::Counts => "counts",
+        }
+    }
+}
+
+/// Most samples a line or frame may stand for: a second.
+const MOST_EVERY: u16 = 1000;
 
 /// When the heading follows the magnetometer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -108,73 +146,6 @@ impl Choice {
         match self {
             Self::Default => "default",
             Self::Notes => "notes",
-        }
-    }
-}
-
-/// What can be set, one number each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Setting {
-    /// τ of the default estimator's tilt.
-    TiltTime,
-    /// ζ of it.
-    Damping,
-    /// How far ahead of the last sample the orientation is given.
-    Lead,
-    /// τ of its heading.
-    HeadingTime,
-    /// How far the field may lie from the reference.
-    FieldTolerance,
-    /// τ of the notes' filter.
-    NotesTime,
-    /// α of the notes' filter, the gyro's weight in a sample of a millisecond.
-    NotesAlpha,
-}
-
-impl Setting {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::TiltTime,
-        Self::Damping,
-        Self::Lead,
-        Self::HeadingTime,
-        Self::FieldTolerance,
-        Self::NotesTime,
-        Self::NotesAlpha,
-    ];
-
-    /// As it is typed.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::TiltTime => "tilt-time",
-            Self::Damping => "damping",
-            Self::Lead => "lead",
-            Self::HeadingTime => "heading-time",
-            Self::FieldTolerance => "field-tolerance",
-            Self::NotesTime => "notes-time",
-            Self::NotesAlpha => "notes-alpha",
-        }
-    }
-
-    /// Of its value; empty for a plain number.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::TiltTime | Self::HeadingTime | Self::NotesTime => "s",
-            Self::Lead => "ms",
-            Self::Damping | Self::FieldTolerance | Self::NotesAlpha => "",
-        }
-    }
-
-    /// Least and greatest value.
-    pub const fn range(self) -> [f32; 2] {
-        match self {
-            Self::TiltTime => [0.1, 100.0],
-            Self::Damping => [0.1, 5.0],
-            Self::Lead => [0.0, 100.0],
-            Self::HeadingTime => [0.1, 1000.0],
-            Self::FieldTolerance => [0.01, 1.0],
-            Self::NotesTime => [0.0, 1000.0],
-            Self::NotesAlpha => [0.0, 1.0],
         }
     }
 }
@@ -259,9 +230,6 @@ impl Refusal {
     }
 }
 
-/// Names of [`Setting::ALL`].
-const SETTINGS: &str = "tilt-time damping lead heading-time field-tolerance notes-time notes-alpha";
-
 /// A line without its colon and its end. Words are separated by spaces, any number of them.
 ///
 /// # Errors
@@ -317,6 +285,27 @@ pub fn parse(line: &str) -> Result<Request, Refusal> {
                 Some(decimals)
             }
         }),
+        "stream" => Request::Stream(match next() {
+            None => None,
+            Some("text") => Some(Format::Text),
+            Some("timed") => Some(Format::Timed),
+            Some("binary") => Some(Format::Binary),
+            Some("counts") => Some(Format::Counts),
+            Some(other) => return refuse(other, Reason::Wanted("text, timed, binary or counts")),
+        }),
+        "every" => Request::Every(match next() {
+            None => None,
+            Some(word) => match word.parse() {
+                Ok(samples @ 1..=MOST_EVERY) => Some(samples),
+                _ => return refuse(word, Reason::Wanted("1 to 1000")),
+            },
+        }),
+        "lock" => Request::Lock(match next() {
+            None => None,
+            Some("sensor") => Some(Lock::Sensor),
+            Some("usb") => Some(Lock::Usb),
+            Some(other) => return refuse(other, Reason::Wanted("sensor or usb")),
+        }),
         "get" => Request::Get(setting(verb, next())?),
         "set" => {
             let setting = setting(verb, next())?;
@@ -346,7 +335,7 @@ fn refuse<T>(word: &str, reason: Reason) -> Result<T, Refusal> {
 
 fn setting(verb: &str, word: Option<&str>) -> Result<Setting, Refusal> {
     let Some(word) = word else {
-        return refuse(verb, Reason::Wanted(SETTINGS));
+        return refuse(verb, Reason::Wanted(Setting::NAMES));
     };
     let found = Setting::ALL.into_iter().find(|s| s.name() == word);
     found.ok_or_else(|| Refusal::new(word, Reason::UnknownSetting))

@@ -4,8 +4,8 @@
 //! first; here every step is put the way that costs least.
 
 use super::gyro::{Remainders, half_angle_per_count};
-use super::half_angle::{tangent_excess, tangent_squared};
-use super::inclination::{HalfAnglePerTangent, Share, levelled, near_level};
+use super::half_angle::{length_squared, tangent_excess};
+use super::inclination::{NearLevel, Share, levelled};
 use super::multiply::{Multiply, Portable};
 use super::number::Q;
 use super::quaternion::Quaternion;
@@ -16,13 +16,14 @@ use crate::sensor::{GyroRange, RawSample};
 use crate::units::Seconds;
 
 pub use super::gyro::Nanoseconds;
+pub use super::measurement::Force;
 
 /// What a person chooses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
     /// What the gyro was set to.
     pub gyro: GyroRange,
-    /// At most 7.1 ms at ±2000 °/s and in proportion more at the others, 57 ms at ±250 °/s: a longer one is
+    /// At most 6.7 ms at ±2000 °/s and in proportion more at the others, 53 ms at ±250 °/s: a longer one is
     /// taken for that.
     pub sample_period: Nanoseconds,
     /// τ, or α by way of [`TimeConstant::from_gyro_weight`].
@@ -47,7 +48,7 @@ impl Bias {
 
     /// From physical units, at the range the gyro was set to. Zero for what is not a number.
     pub fn new(bias: GyroBias<f32>, gyro: GyroRange) -> Self {
-        let per_dps = (f64::from(1 << 30) / gyro.max_dps()) as f32;
+        let per_dps = gyro.counts_per_dps() * 32768.0;
         let dps: [f32; 3] = bias.rate().dps().into();
         // A cast saturates.
         Self::from_parts_of_counts(dps.map(|dps| (dps * per_dps) as i32))
@@ -59,9 +60,8 @@ impl Bias {
 struct Derived<M> {
     /// Half the angle of one sample, in radians per count.
     half_angle_per_count: Q<M, 49>,
+    near_level: NearLevel<M>,
     share: Share,
-    /// Of a little share only.
-    half_angle_per_tangent: Option<HalfAnglePerTangent<M>>,
 }
 
 impl<M: Multiply> Derived<M> {
@@ -75,11 +75,8 @@ impl<M: Multiply> Derived<M> {
         let share = Share::from_accelerometer_weight(time_constant.accelerometer_weight(seconds));
         Self {
             half_angle_per_count: half_angle_per_count(gyro, sample_period),
+            near_level: NearLevel::new(share),
             share,
-            half_angle_per_tangent: match share {
-                Share::Little(share) => Some(HalfAnglePerTangent::new(share)),
-                Share::Much(_) => None,
-            },
         }
     }
 }
@@ -87,7 +84,7 @@ impl<M: Multiply> Derived<M> {
 /// The complementary filter on quaternions, eq. 24, in integers.
 ///
 /// ```
-/// use vrduino::fixed::complementary::{Complementary, Nanoseconds, Parameters};
+/// use vrduino::fixed::complementary::{Complementary, Force, Nanoseconds, Parameters};
 /// use vrduino::orientation::DEFAULT_TIME_CONSTANT;
 /// use vrduino::sensor::{GyroRange, RawSample};
 ///
@@ -98,7 +95,7 @@ impl<M: Multiply> Derived<M> {
 /// });
 /// // A second of 90 °/s about the vertical, which is what 1475 counts come to.
 /// let sample = RawSample { gyro: [0, 1475, 0], accel: [0, 16384, 0], temperature: 0, fresh: true };
-/// filter.reset(sample.accel);
+/// filter.reset(Force::from_counts(sample.accel));
 /// for _ in 0..1000 {
 ///     filter.update(&sample);
 /// }
@@ -107,6 +104,7 @@ impl<M: Multiply> Derived<M> {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Complementary<M = Portable> {
+    gyro: GyroRange,
     derived: Derived<M>,
     bias: Bias,
     remainders: Remainders,
@@ -124,6 +122,7 @@ impl<M: Multiply> Complementary<M> {
     /// Starts from the identity and without a bias; products are taken by `M`.
     pub fn with(parameters: &Parameters) -> Self {
         Self {
+            gyro: parameters.gyro,
             derived: Derived::new(parameters),
             bias: Bias::ZERO,
             remainders: Remainders::START,
@@ -133,7 +132,14 @@ impl<M: Multiply> Complementary<M> {
 
     /// Goes on with other parameters.
     pub fn tune(&mut self, parameters: &Parameters) {
+        self.gyro = parameters.gyro;
         self.derived = Derived::new(parameters);
+    }
+
+    /// The time between two samples as it was measured, which is what the gyro turns for. The accelerometer's share
+    /// stays that of the nominal one.
+    pub fn set_sample_period(&mut self, period: Nanoseconds) {
+        self.derived.half_angle_per_count = half_angle_per_count(self.gyro, period);
     }
 
     /// What is taken off the gyro from now on.
@@ -147,64 +153,56 @@ impl<M: Multiply> Complementary<M> {
     /// A force of zero counts corrects nothing.
     #[inline(always)]
     pub fn update(&mut self, sample: &RawSample) {
-        let h = self.half_angle(sample.gyro);
-        if let Some(orientation) = self.near_level(h, sample.accel) {
-            self.orientation = orientation;
-        } else {
-            self.update_anywhere(sample);
-        }
+        self.update_corrected(sample.gyro, Force::from_counts(sample.accel));
     }
 
-    /// q_ω, and the force as it sees it.
+    /// The same with the accelerometer corrected.
     #[inline(always)]
-    fn turned(&self, h: Vector<M, 32>, accel: [i16; 3]) -> (Quaternion<M>, Vector<M, 12>) {
-        let h_squared = h.norm_squared();
-        let excess = tangent_excess(h_squared);
-        let q_omega = self.orientation.turned_in_body(h.grown(excess));
-        let force = q_omega.in_world_times_square(
-            Vector::from_counts(accel),
-            tangent_squared(h_squared, excess),
-        );
-        (q_omega, force)
+    pub fn update_corrected(&mut self, gyro: [i16; 3], force: Force) {
+        let (tangent, h_squared) = self.half_angle(gyro);
+        let q_omega = self.orientation.turned_in_body(tangent);
+        let force = q_omega.in_world_times_square(force.vector(), length_squared(h_squared));
+        let Some((x, z)) = self.derived.near_level.little(force) else {
+            self.orientation = q_omega;
+            return self.level_anywhere(force.x, force.y, force.z);
+        };
+        let q = q_omega.levelled_a_little(x, z);
+        let Some(q) = q.normalised_nearby() else {
+            self.orientation = q;
+            return self.normalise();
+        };
+        self.orientation = q;
     }
 
-    /// The sample as it nearly always is: a tilt error of at most 45°, α above 7/8, and a turn of a few degrees.
-    #[inline(always)]
-    fn near_level(&self, h: Vector<M, 32>, accel: [i16; 3]) -> Option<Quaternion<M>> {
-        let half_angle_per_tangent = self.derived.half_angle_per_tangent.as_ref()?;
-        let (q_omega, force) = self.turned(h, accel);
-        let (x, z) = near_level(force, half_angle_per_tangent)?;
-        q_omega.levelled_a_little(x, z).normalised_nearby()
-    }
-
-    /// Any sample, whose remainders are there already. From the start again: to put away what it has found would
-    /// cost the common path its time.
+    /// By the share of any tilt. The force is in the world, and in registers: a common path that keeps it in
+    /// memory for this one is longer.
     #[cold]
     #[inline(never)]
-    fn update_anywhere(&mut self, sample: &RawSample) {
-        let rates = self.rates(sample.gyro);
-        self.remainders
-            .take_back(rates, self.derived.half_angle_per_count);
-        let h = self.half_angle(sample.gyro);
-        let (q_omega, force) = self.turned(h, sample.accel);
-        self.orientation = levelled(q_omega, force, self.derived.share);
+    fn level_anywhere(&mut self, x: Q<M, 11>, y: Q<M, 11>, z: Q<M, 11>) {
+        self.orientation = levelled(self.orientation, Vector::new(x, y, z), self.derived.share);
     }
 
-    /// In counts, with the bias off.
+    /// To unit length, also after a turn by many degrees.
+    #[cold]
+    #[inline(never)]
+    fn normalise(&mut self) {
+        self.orientation = self.orientation.normalised();
+    }
+
+    /// n tan(φ/2) of eq. 17, with the bias off, and (φ/2)². What is rounded off is carried over to the next
+    /// sample: in an even turn it would be the same again and again.
     #[inline(always)]
-    fn rates(&self, gyro: [i16; 3]) -> Vector<M, 15> {
+    fn half_angle(&mut self, gyro: [i16; 3]) -> (Vector<M, 32>, Q<M, 32>) {
         let [x, y, z] = gyro;
         let Bias([bias_x, bias_y, bias_z]) = self.bias;
         let rate = |count: i16, bias: i32| Q::from_bits((i32::from(count) << 15) - bias);
-        Vector::new(rate(x, bias_x), rate(y, bias_y), rate(z, bias_z))
-    }
-
-    /// n φ/2 of eq. 17, with the bias off. What is rounded off is carried over to the next sample.
-    #[inline(always)]
-    fn half_angle(&mut self, gyro: [i16; 3]) -> Vector<M, 32> {
-        let rates = self.rates(gyro);
-        self.remainders
-            .half_angle(rates, self.derived.half_angle_per_count)
+        let rate: Vector<M, 15> = Vector::new(rate(x, bias_x), rate(y, bias_y), rate(z, bias_z));
+        let per_count = self.derived.half_angle_per_count;
+        let h: Vector<M, 32> = rate.times(per_count);
+        let h_squared = h.norm_squared();
+        let tangent_per_count = per_count.plus(per_count, tangent_excess(h_squared));
+        let tangent = self.remainders.half_angle(rate, tangent_per_count);
+        (tangent, h_squared)
     }
 
     /// w, x, y, z of the orientation as of the last sample, body to world.
@@ -217,17 +215,29 @@ impl<M: Multiply> Complementary<M> {
         self.orientation.upper().map(Q::bits)
     }
 
-    /// Starts again with no turn about the vertical and the tilt this force (counts, body frame) shows
-    /// (section 5.2); from the identity if it shows none.
-    pub fn reset(&mut self, accel: [i16; 3]) {
-        self.orientation = Quaternion::IDENTITY;
-        self.level(accel);
+    /// Goes on from this orientation, body to world, in units of 2⁻³⁰. False, and nothing changes, if its length is not
+    /// from ½ to 2.
+    pub fn set(&mut self, orientation: [i32; 4]) -> bool {
+        let q = Quaternion::from_upper(orientation.map(Q::from_bits));
+        let Some(q) = q.normalised_anywhere() else {
+            return false;
+        };
+        // Once more: a root in few steps is good to seven digits.
+        self.orientation = q.normalised();
+        true
     }
 
-    /// Takes the tilt this force (counts, body frame) shows at once and keeps yaw. One without direction changes
-    /// nothing.
-    pub fn level(&mut self, accel: [i16; 3]) {
-        let force = self.orientation.in_world(Vector::from_counts(accel));
+    /// Starts again with no turn about the vertical and the tilt this force (body frame) shows (section 5.2); from the
+    /// identity if it shows none.
+    pub fn reset(&mut self, force: Force) {
+        self.orientation = Quaternion::IDENTITY;
+        self.level(force);
+    }
+
+    /// Takes the tilt this force (body frame) shows at once and keeps yaw. One without direction changes nothing.
+    pub fn level(&mut self, force: Force) {
+        let one = const { Q::constant(1.0) };
+        let force = self.orientation.in_world_times_square(force.vector(), one);
         self.orientation = levelled(self.orientation, force, Share::WHOLE);
     }
 }

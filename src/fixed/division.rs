@@ -16,6 +16,15 @@ pub fn reciprocal<M: Multiply>(y: Q<M, 30>) -> Q<M, 30> {
     guess.plus(guess, missing)
 }
 
+/// 1/y for y from 1 to below 2: ½ to 1, and never 1 itself, for it is too little by up to 6e-9 of itself.
+#[inline(always)]
+pub fn reciprocal_from_below<M: Multiply>(y: Q<M, 30>) -> Q<M, 31> {
+    let upper = NonZeroU32::new(y.bits() as u32 >> 15 | 1 << 15).unwrap_or(NonZeroU32::MAX);
+    let guess = Q::<M, 31>::from_bits(((((1 << 31) - 1) / upper) << 15) as i32);
+    let nearly_one = const { Q::<M, 29>::from_bits((1 << 29) - 1) };
+    guess.plus(guess, nearly_one.minus(y, guess).finer::<32>())
+}
+
 /// 1/√y for y from ¼ to below 1: above 1 to 2, and 2 itself fits. Good to 6e-8.
 #[inline]
 pub fn reciprocal_root<M: Multiply>(y: Q<M, 31>) -> Q<M, 29> {

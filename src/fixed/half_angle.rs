@@ -14,10 +14,14 @@ pub fn tangent_excess<M: Multiply>(h_squared: Q<M, 32>) -> Q<M, 32> {
     Q::product(h_squared, third.plus(h_squared, next))
 }
 
-/// tan²h = h² + 2h⁴/3 + … from h² and what [`tangent_excess`] makes of it.
+/// 1 + tan²h, the square of the length of (1, t): 1 + h² + 2h⁴/3 + …
+///
+/// What is left out is 17h⁶/45: of h = 0.03, 3e-10.
 #[inline(always)]
-pub fn tangent_squared<M: Multiply>(h_squared: Q<M, 32>, excess: Q<M, 32>) -> Q<M, 32> {
-    h_squared.plus(h_squared, excess + excess)
+pub fn length_squared<M: Multiply>(h_squared: Q<M, 32>) -> Q<M, 27> {
+    let one = const { Q::<M, 27>::constant(1.0) };
+    let next = const { Q::<M, 27>::constant(2.0 / 3.0) };
+    one.plus(h_squared, one.plus(h_squared, next))
 }
 
 /// How much shorter sin h is than h: sin h / h − 1 = −h²/6 + h⁴/120 − …, for |h| up to 0.33.

@@ -3,8 +3,8 @@
 //! The angle φ between the force and the vertical is arctan(√(x² + z²)/y), and the turn is about the
 //! horizontal axis (−z, 0, x): neither depends on how long the force is.
 
-use super::arc::{ARC_TANGENT_PER_RATIO, cosine, horner, sine_per_angle};
-use super::division::{reciprocal, reciprocal_root};
+use super::arc::{ARC_TANGENT_PER_RATIO, TANGENT_TERM, cosine, horner, sine_per_angle};
+use super::division::{reciprocal, reciprocal_from_below, reciprocal_root};
 use super::half_angle::tangent_excess;
 use super::multiply::Multiply;
 use super::number::Q;
@@ -38,47 +38,64 @@ impl Share {
     }
 }
 
-/// A little share times the polynomial of the arc tangent: what a half angle is of the tilt's tangent.
-#[derive(Clone, Copy, Debug)]
-pub struct HalfAnglePerTangent<M>([Q<M, 34>; 7]);
-
-impl<M: Multiply> HalfAnglePerTangent<M> {
-    /// From the share as Q35.
-    pub fn new(share: i32) -> Self {
-        let times_share = |q30: i32| (i64::from(q30) * i64::from(share) + (1 << 30)) >> 31;
-        Self(ARC_TANGENT_PER_RATIO.map(|q30| Q::from_bits(times_share(q30) as i32)))
-    }
-}
-
-/// A levelling turn by less than 12°: (x, z) tan(φ s)/√(x² + z²).
+/// A levelling turn by less than 12°: (x, z) tan(φ s)/√(x² + z²) of a tilt φ and its share s.
 pub type Little<M> = (Q<M, 32>, Q<M, 32>);
 
-/// From half angles to their tangents.
-#[inline(always)]
-fn tangents<M: Multiply>(h_x: Q<M, 32>, h_z: Q<M, 32>) -> Little<M> {
-    let excess = tangent_excess(Q::product(h_x, h_x).plus(h_z, h_z));
-    (h_x.plus(h_x, excess), h_z.plus(h_z, excess))
+/// From tilts to levelling turns, near level.
+#[derive(Clone, Copy, Debug)]
+pub struct NearLevel<M> {
+    /// tan(s φ)/tan φ: a polynomial in tan²φ − ½.
+    gain: [Q<M, 35>; 7],
+    /// What the upper half of up² − x² − z² has to be at least: more than it can be where the share is not little.
+    margin: i32,
 }
 
-/// For tilts up to 45°; none beyond.
-#[inline(always)]
-pub fn near_level<M: Multiply>(
-    force: Vector<M, 12>,
-    half_angle_per_tangent: &HalfAnglePerTangent<M>,
-) -> Option<Little<M>> {
-    let Vector { x, y: up, z } = force;
-    if up.bits() <= 0 || x.wide(x) + z.wide(z) > up.wide(up) {
-        return None;
+impl<M: Multiply> NearLevel<M> {
+    /// For this share.
+    pub fn new(share: Share) -> Self {
+        let (share, margin) = match share {
+            // 1 would be within what the squares are rounded by.
+            Share::Little(share) => (i64::from(share), 2),
+            Share::Much(_) => (0, 1 << 30),
+        };
+        // As Q38.
+        let squared = (share * share) >> 32;
+        let times_share = |[arc, term]: [i32; 2]| {
+            let per_share = i64::from(arc) + ((i64::from(term) * squared) >> 38);
+            Q::from_bits(((per_share * share + (1 << 29)) >> 30) as i32)
+        };
+        Self {
+            gain: core::array::from_fn(|k| {
+                times_share([ARC_TANGENT_PER_RATIO[k], TANGENT_TERM[k]])
+            }),
+            margin,
+        }
     }
-    // Up becomes 1 to 2, and the others are no longer.
-    let shift = up.bits().leading_zeros() - 1;
-    let scaled = |q: Q<M, 12>| Q::<M, 30>::from_bits(q.bits() << shift);
-    let per_up = reciprocal(scaled(up));
-    let x: Q<M, 30> = Q::<M, 28>::product(scaled(x), per_up).finer();
-    let z: Q<M, 30> = Q::<M, 28>::product(scaled(z), per_up).finer();
-    let tangent_squared: Q<M, 30> = Q::<M, 28>::product(x, x).plus(z, z).finer();
-    let gain = horner(tangent_squared, half_angle_per_tangent.0);
-    Some(tangents(Q::product(x, gain), Q::product(z, gain)))
+
+    /// For tilts up to 45°, but for 0.02° where the force is 1 g at ±16 g; none beyond, nor of a force of less
+    /// than 50 counts.
+    #[inline(always)]
+    pub fn little(&self, force: Vector<M, 11>) -> Option<Little<M>> {
+        let Vector { x, y: up, z } = force;
+        let [x_bits, up_bits, z_bits] = [x, up, z].map(Q::bits);
+        let room = M::subtract_high(M::high(up_bits, up_bits), x_bits, x_bits);
+        let room = M::subtract_high(room, z_bits, z_bits);
+        if up_bits <= 0 || room < self.margin {
+            return None;
+        }
+        // Up becomes 1 to 2, and the others are less.
+        let shift = up.bits().leading_zeros() - 1;
+        let scaled = |q: Q<M, 11>| Q::<M, 30>::from_bits(q.bits() << shift);
+        let per_up = reciprocal_from_below(scaled(up));
+        let (x, z): (Q<M, 29>, Q<M, 29>) =
+            (Q::product(scaled(x), per_up), Q::product(scaled(z), per_up));
+        let tangent_squared_less_half: Q<M, 32> = const { Q::<M, 26>::constant(-0.5) }
+            .plus(x, x)
+            .plus(z, z)
+            .finer();
+        let gain = horner(tangent_squared_less_half, self.gain);
+        Some((Q::product(x, gain), Q::product(z, gain)))
+    }
 }
 
 /// φ (x, z)/√(x² + z²): the tilt, 0 to π, and which way.
@@ -91,7 +108,7 @@ pub struct Tilt<M> {
 /// Any tilt; none if the force is zero, which has no direction. One that points straight down
 /// is turned up about x, as the notes leave open.
 #[inline]
-pub fn anywhere<M: Multiply>(force: Vector<M, 12>) -> Option<Tilt<M>> {
+pub fn anywhere<M: Multiply, const BITS: u32>(force: Vector<M, BITS>) -> Option<Tilt<M>> {
     let Vector { x, y: up, z } = force;
     let largest = x.bits().unsigned_abs() | up.bits().unsigned_abs() | z.bits().unsigned_abs();
     if largest == 0 {
@@ -99,7 +116,7 @@ pub fn anywhere<M: Multiply>(force: Vector<M, 12>) -> Option<Tilt<M>> {
     }
     // The largest becomes ½ to 1.
     let shift = largest.leading_zeros().saturating_sub(2);
-    let scaled = |q: Q<M, 12>| Q::<M, 30>::from_bits(q.bits() << shift);
+    let scaled = |q: Q<M, BITS>| Q::<M, 30>::from_bits(q.bits() << shift);
     let (x, up, z) = (scaled(x), scaled(up), scaled(z));
     let Some((x, z, horizontal)) = horizontal(x, z) else {
         let straight_down = Tilt {
@@ -118,9 +135,11 @@ pub fn anywhere<M: Multiply>(force: Vector<M, 12>) -> Option<Tilt<M>> {
 
 impl<M: Multiply> Tilt<M> {
     /// A share of less than 1/16.
-    #[inline(always)]
+    #[inline]
     pub fn little(self, share: Q<M, 35>) -> Little<M> {
-        tangents(Q::product(self.x, share), Q::product(self.z, share))
+        let (x, z) = (Q::product(self.x, share), Q::product(self.z, share));
+        let excess = tangent_excess(Q::<M, 32>::product(x, x).plus(z, z));
+        (x.plus(x, excess), z.plus(z, excess))
     }
 
     /// Any share, as Q35.
@@ -144,9 +163,9 @@ impl<M: Multiply> Tilt<M> {
 
 /// The orientation levelled by a share of any tilt, which the force in the world shows, and normalised.
 #[inline]
-pub fn levelled<M: Multiply>(
+pub fn levelled<M: Multiply, const BITS: u32>(
     q: Quaternion<M>,
-    force: Vector<M, 12>,
+    force: Vector<M, BITS>,
     share: Share,
 ) -> Quaternion<M> {
     let levelled = match (anywhere(force), share) {
@@ -203,8 +222,13 @@ fn angle<M: Multiply>(horizontal: Q<M, 30>, up: Q<M, 30>) -> Q<M, 29> {
     let shift = large.bits().leading_zeros() - 1;
     let scaled = |q: Q<M, 30>| Q::<M, 30>::from_bits(q.bits() << shift);
     let ratio: Q<M, 30> = Q::<M, 28>::product(scaled(small), reciprocal(scaled(large))).finer();
-    let squared: Q<M, 30> = Q::<M, 28>::product(ratio, ratio).finer();
-    let per_ratio = horner(squared, ARC_TANGENT_PER_RATIO.map(Q::<M, 30>::from_bits));
+    let squared_less_half = const { Q::<M, 28>::constant(-0.5) }.plus(ratio, ratio);
+    // ½ itself is just too much.
+    let squared_less_half = Q::<M, 28>::from_bits(squared_less_half.bits().min((1 << 27) - 1));
+    let per_ratio = horner(
+        squared_less_half.finer::<32>(),
+        ARC_TANGENT_PER_RATIO.map(Q::<M, 30>::from_bits),
+    );
     let arc: Q<M, 29> = Q::<M, 28>::product(ratio, per_ratio).finer();
     let (half_turn, right_angle) = const { (Q::constant(PI), Q::constant(FRAC_PI_2)) };
     match (steep, up.bits() >= 0) {

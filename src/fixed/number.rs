@@ -99,6 +99,13 @@ impl<M: Multiply, const BITS: u32> Q<M, BITS> {
         Q::from_bits(self.bits << (FINER - BITS))
     }
 
+    /// Twice the value, with the same bits: one fraction bit less.
+    #[inline(always)]
+    pub fn twice<const LESS: u32>(self) -> Q<M, LESS> {
+        const { assert!(LESS + 1 == BITS, "twice as much is one fraction bit less") }
+        Q::from_bits(self.bits)
+    }
+
     /// The same value in a coarser format, rounded down.
     #[inline(always)]
     pub fn coarser<const COARSER: u32>(self) -> Q<M, COARSER> {

@@ -10,6 +10,9 @@ use super::number::{Q, Wide};
 use super::vector::Vector;
 
 /// w, x, y, z.
+///
+/// The parts of a sum stand in the order in which fewest values wait: with one instruction for each product, the
+/// compiler keeps it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quaternion<M> {
     w: Wide<M, 62>,
@@ -40,6 +43,7 @@ impl<M: Multiply> Quaternion<M> {
     };
 
     /// From w, x, y and z.
+    #[inline]
     pub fn from_upper(parts: [Q<M, 30>; 4]) -> Self {
         let [w, x, y, z] = parts.map(Wide::from_upper);
         Self { w, x, y, z }
@@ -48,7 +52,12 @@ impl<M: Multiply> Quaternion<M> {
     /// w, x, y and z, rounded down.
     #[inline(always)]
     pub fn upper(self) -> [Q<M, 30>; 4] {
-        [self.w, self.x, self.y, self.z].map(Wide::upper)
+        [
+            self.w.upper(),
+            self.x.upper(),
+            self.y.upper(),
+            self.z.upper(),
+        ]
     }
 
     /// q (1, t): a turn in the body's own axes; √(1 + t²) times as long.
@@ -56,10 +65,10 @@ impl<M: Multiply> Quaternion<M> {
     pub fn turned_in_body(self, t: Vector<M, 32>) -> Self {
         let [w, x, y, z] = self.upper();
         Self {
-            w: self.w.plus(x, -t.x).plus(y, -t.y).plus(z, -t.z),
-            x: self.x.plus(w, t.x).plus(y, t.z).plus(z, -t.y),
-            y: self.y.plus(w, t.y).plus(z, t.x).plus(x, -t.z),
             z: self.z.plus(w, t.z).plus(x, t.y).plus(y, -t.x),
+            y: self.y.plus(w, t.y).plus(z, t.x).plus(x, -t.z),
+            x: self.x.plus(w, t.x).plus(y, t.z).plus(z, -t.y),
+            w: self.w.plus(x, -t.x).plus(y, -t.y).plus(z, -t.z),
         }
     }
 
@@ -82,8 +91,8 @@ impl<M: Multiply> Quaternion<M> {
         let [w, x, y, z] = self.upper();
         Self {
             w: self.w.plus(x, t_z).plus(z, -t_x),
-            x: self.x.plus(w, -t_z).plus(y, -t_x),
             y: self.y.plus(x, t_x).plus(z, t_z),
+            x: self.x.plus(w, -t_z).plus(y, -t_x),
             z: self.z.plus(w, t_x).plus(y, -t_z),
         }
     }
@@ -108,23 +117,31 @@ impl<M: Multiply> Quaternion<M> {
         }
     }
 
+    /// q a q⁻¹ |q|²: a vector of the body as seen from the world. 15 fraction bits and |q|² in, 11
+    /// out. Half of what 32 bits hold goes in.
+    ///
+    /// |q|² a + 2 v × (v × a + w a) with the vector part v: what is in the brackets is no longer than a.
+    #[inline(always)]
+    pub fn in_world_times_square(self, a: Vector<M, 15>, norm_squared: Q<M, 27>) -> Vector<M, 11> {
+        let [w, x, y, z] = self.upper();
+        let a: Vector<M, 16> = a.finer();
+        let inner: Vector<M, 14> = Vector {
+            x: Q::product(w, a.x).plus(y, a.z).minus(z, a.y),
+            y: Q::product(w, a.y).plus(z, a.x).minus(x, a.z),
+            z: Q::product(w, a.z).plus(x, a.y).minus(y, a.x),
+        };
+        let outer: Vector<M, 11> = a.times(norm_squared);
+        let (x, y, z): (Q<M, 29>, Q<M, 29>, Q<M, 29>) = (x.twice(), y.twice(), z.twice());
+        Vector {
+            x: outer.x.plus(y, inner.z).minus(z, inner.y),
+            z: outer.z.plus(x, inner.y).minus(y, inner.x),
+            y: outer.y.plus(z, inner.x).minus(x, inner.z),
+        }
+    }
+
     /// q a q⁻¹: a vector of the body as seen from the world. 15 fraction bits in, 12 out.
     #[inline(always)]
     pub fn in_world(self, a: Vector<M, 15>) -> Vector<M, 12> {
-        self.with_what_turns(a, a.coarser())
-    }
-
-    /// q a q⁻¹ |q|², of a quaternion of which |q|² − 1 is known.
-    #[inline(always)]
-    pub fn in_world_times_square(self, a: Vector<M, 15>, excess: Q<M, 32>) -> Vector<M, 12> {
-        self.with_what_turns(a, a.coarser().grown(excess))
-    }
-
-    ///
-    /// |q|² a + 2 v × (v × a + w a) with the vector part v and the first of these given: what is in the brackets
-    /// is no longer than a, and the 2 is in the formats.
-    #[inline(always)]
-    fn with_what_turns(self, a: Vector<M, 15>, outer: Vector<M, 12>) -> Vector<M, 12> {
         let [w, x, y, z] = self.upper();
         let inner: Vector<M, 15> = Vector::<M, 13>::new(
             Q::product(w, a.x).plus(y, a.z).minus(z, a.y),
@@ -132,12 +149,12 @@ impl<M: Multiply> Quaternion<M> {
             Q::product(w, a.z).plus(x, a.y).minus(y, a.x),
         )
         .finer();
-        // A product has 13 fraction bits; read with 12 it is twice as large.
-        let twice = |q: Q<M, 30>| q.read_as::<29>();
+        let outer: Vector<M, 12> = a.coarser();
+        let (x, y, z): (Q<M, 29>, Q<M, 29>, Q<M, 29>) = (x.twice(), y.twice(), z.twice());
         Vector {
-            x: outer.x.plus(twice(y), inner.z).minus(twice(z), inner.y),
-            y: outer.y.plus(twice(z), inner.x).minus(twice(x), inner.z),
-            z: outer.z.plus(twice(x), inner.y).minus(twice(y), inner.x),
+            x: outer.x.plus(y, inner.z).minus(z, inner.y),
+            y: outer.y.plus(z, inner.x).minus(x, inner.z),
+            z: outer.z.plus(x, inner.y).minus(y, inner.x),
         }
     }
 
@@ -186,17 +203,23 @@ impl<M: Multiply> Quaternion<M> {
         excess.plus(w, w).plus(x, x).plus(y, y).plus(z, z).upper()
     }
 
-    /// q / |q|, within 5e-9 of unit length, if |q|² is within 1/128 of 1.
+    /// q / |q|, within 7e-9 of unit length, if |q|² is from 1/1024 below 1 to 1/512 above.
     #[inline(always)]
     pub fn normalised_nearby(self) -> Option<Self> {
         let excess = self.excess();
-        let small = const { Q::<M, 28>::constant(1.0 / 128.0).bits() };
-        (-small..small)
-            .contains(&excess.bits())
-            .then(|| self.shortened(excess.finer()))
+        let (least, most) = const {
+            let thousandth = Q::<M, 28>::constant(1.0 / 1024.0).bits();
+            (-thousandth, 2 * thousandth)
+        };
+        (least..most).contains(&excess.bits()).then(|| {
+            // (1 + e)^−½ − 1 = −e/2 + 3e²/8 − …: the next term is below 2.4e-9.
+            let e: Q<M, 33> = excess.finer();
+            let (half, next) = const { (Q::<M, 31>::constant(-0.5), Q::<M, 30>::constant(0.375)) };
+            self.grown(Q::product(e, half.plus(e, next)))
+        })
     }
 
-    /// The same for |q|² from ¾ to below 1¼: what is left of a quarter is 1e-3, then 1e-13.
+    /// q / |q| for |q|² from ¾ to below 1¼: what is left of a quarter is 1e-3, then 1e-13.
     #[inline]
     pub fn normalised(self) -> Self {
         let nearly = self.shortened(self.excess().finer());
@@ -224,7 +247,7 @@ impl<M: Multiply> Quaternion<M> {
         self.grown(shortening(e))
     }
 
-    /// q and as much more of itself as `share` says.
+    /// This and as much more of itself as `share` says.
     #[inline(always)]
     fn grown(self, share: Q<M, 32>) -> Self {
         let [w, x, y, z] = self.upper();

@@ -26,8 +26,10 @@ impl<M: Multiply, const BITS: u32> Vector<M, BITS> {
     #[inline(always)]
     pub fn from_counts(counts: [i16; 3]) -> Self {
         const { assert!(BITS <= 16, "16 bits of a count are before the point") }
-        let [x, y, z] = counts.map(|count| Q::from_bits(i32::from(count) << BITS));
-        Self { x, y, z }
+        // Not by way of `map`, which is a loop in an image built for size.
+        let [x, y, z] = counts;
+        let q = |count: i16| Q::from_bits(i32::from(count) << BITS);
+        Self::new(q(x), q(y), q(z))
     }
 
     /// From the integers that stand for x, y and z.
@@ -98,6 +100,19 @@ impl<M: Multiply, const BITS: u32> Vector<M, BITS> {
             x: self.x.plus(self.x, share),
             y: self.y.plus(self.y, share),
             z: self.z.plus(self.z, share),
+        }
+    }
+
+    /// So many times this.
+    #[inline(always)]
+    pub fn times<const FACTOR: u32, const PRODUCT: u32>(
+        self,
+        factor: Q<M, FACTOR>,
+    ) -> Vector<M, PRODUCT> {
+        Vector {
+            x: Q::product(self.x, factor),
+            y: Q::product(self.y, factor),
+            z: Q::product(self.z, factor),
         }
     }
 

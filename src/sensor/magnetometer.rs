@@ -89,6 +89,22 @@ impl RawField {
         }
     }
 
+    /// Whether the counts are those of a field.
+    ///
+    /// # Errors
+    ///
+    /// [`FieldError`], where they are not.
+    pub fn check(&self) -> Result<(), FieldError> {
+        if self.overflow {
+            return Err(FieldError::Overflow);
+        }
+        let largest = self.resolution.largest_count().unsigned_abs();
+        if self.counts.iter().any(|c| c.unsigned_abs() > largest) {
+            return Err(FieldError::OutOfRange);
+        }
+        Ok(())
+    }
+
     /// The field in µT, in the body frame ([`to_body`]), adjusted. In place of eq. 5 of the course
     /// notes, which does not hold here.
     ///
@@ -99,13 +115,7 @@ impl RawField {
         &self,
         adjustment: SensitivityAdjustment,
     ) -> Result<MagneticField<T>, FieldError> {
-        if self.overflow {
-            return Err(FieldError::Overflow);
-        }
-        let largest = self.resolution.largest_count().unsigned_abs();
-        if self.counts.iter().any(|c| c.unsigned_abs() > largest) {
-            return Err(FieldError::OutOfRange);
-        }
+        self.check()?;
         let microtesla_per_count = self.resolution.scale::<T>();
         let counts = Vector3::from(self.counts.map(|c| convert(f32::from(c))));
         let own = counts.component_mul(&adjustment.factors()) * microtesla_per_count;

@@ -2,19 +2,23 @@
 
 use super::Tracker;
 use super::estimators::Estimators;
-use crate::command::request::{Choice, Refusal, Request, Setting, UseCompass};
-use crate::fusion::{FieldVerdict, Fusion, Motion, Source};
+use crate::command::request::{Choice, Format, Refusal, Request, Setting, UseCompass};
+use crate::fixed::fusion::Fusion;
+use crate::fixed::multiply::Multiply;
+use crate::fusion::{Motion, Source};
+use crate::sampling::Lock;
 use crate::units::AngularRate;
+use crate::wire::provenance::Compass;
 use crate::wire::{self, Decimals, Line};
 
-impl Tracker {
+impl<M: Multiply> Tracker<M> {
     /// Does what a line asks for and says how it is now.
     pub(super) fn answer(&mut self, line: Result<Request, Refusal>) -> Line {
         let estimators = &mut self.estimators;
         match line {
             Err(refusal) => wire::text(format_args!("ERR {refusal}")),
             Ok(Request::Help) => wire::text(
-                "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals",
+                "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals stream every lock",
             ),
             Ok(Request::Version) => wire::text(concat!("OK vrduino ", env!("CARGO_PKG_VERSION"))),
             Ok(Request::Estimator(choice)) => {
@@ -30,8 +34,9 @@ impl Tracker {
             }
             Ok(Request::Defaults) => {
                 estimators.set_defaults();
-                self.decimals = Decimals::COURSE;
+                self.stream.set_defaults();
                 self.use_compass = UseCompass::default();
+                self.lock = Lock::default();
                 wire::text("OK defaults")
             }
             Ok(Request::Compass(choice)) => {
@@ -55,16 +60,52 @@ impl Tracker {
             }
             Ok(Request::Decimals(decimals)) => {
                 if let Some(decimals) = decimals {
-                    self.decimals = decimals;
+                    self.stream.set_decimals(decimals);
                 }
-                wire::text(format_args!("OK decimals {}", self.decimals.get()))
+                self.decimals_state()
+            }
+            Ok(Request::Stream(format)) => {
+                if let Some(format) = format {
+                    self.stream.choose(format);
+                }
+                self.stream_state()
+            }
+            Ok(Request::Every(samples)) => {
+                if let Some(samples) = samples {
+                    self.stream.set_every(samples);
+                }
+                self.stream_state()
             }
             Ok(Request::Bias) => bias(estimators),
+            Ok(Request::Lock(lock)) => {
+                if let Some(lock) = lock {
+                    self.lock = lock;
+                }
+                wire::text(format_args!("OK lock {}", self.lock.name()))
+            }
         }
     }
 }
 
-impl Tracker {
+impl<M: Multiply> Tracker<M> {
+    fn stream_state(&self) -> Line {
+        let (format, every) = (self.stream.format().name(), self.stream.every());
+        wire::text(format_args!("OK stream {format} every {every}"))
+    }
+
+    fn decimals_state(&self) -> Line {
+        let decimals = self.stream.decimals();
+        let most = Decimals::MOST_TIMED;
+        match self.stream.format() {
+            Format::Timed if decimals > most => wire::text(format_args!(
+                "OK decimals {}, {} in timed lines",
+                decimals.get(),
+                most.get()
+            )),
+            _ => wire::text(format_args!("OK decimals {}", decimals.get())),
+        }
+    }
+
     /// The choice, and what it comes to.
     fn compass_state(&self) -> Line {
         let choice = match self.use_compass {
@@ -72,12 +113,14 @@ impl Tracker {
             UseCompass::On => "on",
             UseCompass::Off => "off",
         };
-        let state = match self.estimators.fusion().field_verdict() {
-            _ if self.compass.per_second() == 0 => "no field",
-            _ if !self.follows_compass() => "not used, the field is not calibrated",
-            FieldVerdict::Absent => "no field",
-            FieldVerdict::Undisturbed => "heading by compass",
-            FieldVerdict::Disturbed => "disturbed, heading by gyro",
+        let state = match self.compass_use() {
+            Compass::Absent => "no field",
+            Compass::Unused if self.estimators.choice() == Choice::Notes => {
+                "not used by the notes' filter"
+            }
+            Compass::Unused => "not used, the field is not calibrated",
+            Compass::Followed => "heading by compass",
+            Compass::Disturbed => "disturbed, heading by gyro",
         };
         match self.use_compass {
             UseCompass::Off => wire::text("OK compass off"),
@@ -86,13 +129,13 @@ impl Tracker {
     }
 }
 
-fn value(estimators: &Estimators, setting: Setting) -> Line {
+fn value<M: Multiply>(estimators: &Estimators<M>, setting: Setting) -> Line {
     let name = setting.name();
     wire::answer(name, estimators.get(setting), setting.unit())
 }
 
 /// What the gyro reads at rest, and how that is known.
-fn bias(estimators: &Estimators) -> Line {
+fn bias<M: Multiply>(estimators: &Estimators<M>) -> Line {
     let rate = estimators.bias().rate();
     match estimators.choice() {
         Choice::Notes if estimators.bias_is_measured() => {
@@ -103,7 +146,7 @@ fn bias(estimators: &Estimators) -> Line {
     }
 }
 
-fn verdict(fusion: &Fusion<f32>, rate: AngularRate<f32>) -> Line {
+fn verdict<M: Multiply>(fusion: &Fusion<M>, rate: AngularRate<f32>) -> Line {
     let seconds = |samples: u32| samples / 1000;
     match (fusion.motion(), fusion.bias().source()) {
         (Motion::Still { samples }, _) => {

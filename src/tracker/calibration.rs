@@ -5,13 +5,15 @@ use crate::calibration::Correction;
 use crate::calibration::record::{LENGTH, Record, RecordError};
 use crate::command::request::Piece;
 use crate::decimal::Decimal;
-use crate::sensor::Sample;
+use crate::fixed::fusion::Force;
+use crate::sensor::{Ranges, RawSample, Sample};
 use crate::units::MagneticField;
 use crate::wire::{self, Line};
 
 /// The record in use, and the one that is coming in.
 #[derive(Clone, Debug)]
 pub struct Calibration {
+    ranges: Ranges,
     record: Record,
     correction: Correction<f32>,
     incoming: [u8; LENGTH],
@@ -20,9 +22,10 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Nothing known.
-    pub fn new() -> Self {
+    /// Nothing known of a sensor set to these ranges.
+    pub fn new(ranges: Ranges) -> Self {
         Self {
+            ranges,
             record: Record::default(),
             correction: Correction::none(),
             incoming: [0; LENGTH],
@@ -47,6 +50,25 @@ impl Calibration {
             return sample;
         }
         self.correction.sample(sample)
+    }
+
+    /// The force corrected, in counts.
+    #[inline(always)]
+    pub fn force(&self, counts: [i16; 3]) -> Force {
+        if self.record.accelerometer.is_none() {
+            return Force::from_counts(counts);
+        }
+        self.corrected(counts)
+    }
+
+    #[inline(never)]
+    fn corrected(&self, counts: [i16; 3]) -> Force {
+        let raw = RawSample {
+            accel: counts,
+            ..RawSample::default()
+        };
+        let sample = self.correction.sample(self.ranges.sample(&raw));
+        Force::new(sample.force, self.ranges.accel)
     }
 
     /// The field without the board's iron.

@@ -11,20 +11,11 @@ const GOOD_AGAIN: u32 = 100;
 pub struct Compass {
     /// None while there is no magnetometer.
     adjustment: Option<SensitivityAdjustment>,
-    last: Option<Result<MagneticField<f32>, FieldError>>,
+    last: Option<RawField>,
     this_second: u32,
     last_second: u32,
     /// Since the last that was none.
     good: u32,
-}
-
-/// What has come, and whether to tell of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
-    /// The field, body frame, or why it is none; nothing if nothing came.
-    pub result: Option<Result<MagneticField<f32>, FieldError>>,
-    /// Why it is none, when that begins.
-    pub warning: Option<FieldError>,
 }
 
 impl Compass {
@@ -44,19 +35,13 @@ impl Compass {
         }
     }
 
-    /// To be called with every sample of the IMU; mostly nothing has come.
-    pub fn update(&mut self, raw: Option<RawField>) -> Measured {
-        let (Some(raw), Some(adjustment)) = (raw, self.adjustment) else {
-            return Measured {
-                result: None,
-                warning: None,
-            };
-        };
-        let field = raw.field(adjustment);
-        self.last = Some(field);
+    /// A measurement has come. Why it is none, when that begins.
+    pub fn update(&mut self, raw: RawField) -> Option<FieldError> {
+        self.adjustment?;
+        self.last = Some(raw);
         self.this_second = self.this_second.saturating_add(1);
-        let warning = match field {
-            Ok(_) => {
+        match raw.check() {
+            Ok(()) => {
                 self.good = self.good.saturating_add(1);
                 None
             }
@@ -65,10 +50,6 @@ impl Compass {
                 self.good = 0;
                 begins.then_some(error)
             }
-        };
-        Measured {
-            result: Some(field),
-            warning,
         }
     }
 
@@ -78,9 +59,14 @@ impl Compass {
         self.this_second = 0;
     }
 
-    /// The last measurement, none if there was not one in the last second.
+    /// The last measurement, body frame, or why it is none; nothing without a magnetometer.
     pub fn last(&self) -> Option<Result<MagneticField<f32>, FieldError>> {
-        self.last.filter(|_| self.last_second > 0)
+        Some(self.last?.field(self.adjustment?))
+    }
+
+    /// The same, if there was one in the last second.
+    pub fn recent(&self) -> Option<Result<MagneticField<f32>, FieldError>> {
+        self.last().filter(|_| self.last_second > 0)
     }
 
     /// Measurements in the last second.

@@ -145,16 +145,17 @@ fn no_measurement_is_lost_and_none_comes_twice_whatever_the_clocks() {
         }
         info(&mut run);
         let (_, rate) = field(&told(&run, "Field:"));
-        assert!((99..=101).contains(&rate), "{rate} a second");
+        // A second is a thousand samples here, by the sensor's clock.
+        assert!((98..=102).contains(&rate), "{rate} a second");
         assert_eq!(told(&run, "FIELDS_SKIPPED:"), "0");
         complains_of_nothing(&mut run);
     }
 }
 
-/// When the bursts of the IMU were, and what the counters say.
+/// When the bursts of the IMU were once it is locked on, and what the counters say.
 fn timing(part: Part) -> (Vec<u64>, [String; 3]) {
     let mut run = run(still(), part);
-    run.seconds(1.5);
+    run.seconds(2.5);
     run.board.chip().sensor.recording = Some(Vec::new());
     run.seconds(2.0);
     let times = recorded(&mut run).iter().map(|burst| burst.at).collect();
@@ -165,17 +166,19 @@ fn timing(part: Part) -> (Vec<u64>, [String; 3]) {
 
 #[test]
 fn the_imu_is_sampled_as_if_there_were_no_magnetometer() {
-    // A clock that is slow has samples repeated.
-    let part = Part::perfect().clock_error(-0.01);
+    let error = -0.01;
+    let part = Part::perfect().clock_error(error);
     let (with, counters) = timing(part);
     let (without, expected) = timing(part.without_magnetometer());
     assert_eq!(counters, expected);
     assert_eq!(expected[2], "0", "overruns");
-    assert_eq!((with.len(), without.len()), (2000, 2000));
+    let period = (MILLISECOND as f64 / (1.0 + error)) as u64;
     for times in [with, without] {
+        assert!((1979..=1981).contains(&times.len()), "{}", times.len());
         for pair in times.windows(2) {
-            let off = (pair[1] - pair[0]).abs_diff(MILLISECOND);
-            assert!(off < 3 * MICROSECOND, "{off} ticks from a millisecond");
+            // One that was asked for too early is asked for again.
+            let off = (pair[1] - pair[0]).abs_diff(period);
+            assert!(off < 135 * MICROSECOND, "{off} ticks from a period");
         }
     }
 }
@@ -219,11 +222,9 @@ fn a_magnetometer_that_vanishes_or_freezes_is_reported_once_and_costs_no_sample(
         assert!(!run.text.contains("error"), "{}", run.text);
         let bursts = recorded(&mut run);
         let span = bursts[bursts.len() - 1].at - bursts[0].at;
-        assert_eq!(
-            bursts.len() as u64 - 1,
-            span.div_ceil(MILLISECOND),
-            "a sample a millisecond"
-        );
+        let periods = span.div_ceil(MILLISECOND);
+        let apart = (bursts.len() as u64 - 1).abs_diff(periods);
+        assert!(apart <= 1, "{} bursts in {periods} periods", bursts.len());
         info(&mut run);
         assert_eq!(told(&run, "Field:"), "none");
         assert_eq!(told(&run, "OVERRUNS:"), "0");

@@ -192,7 +192,8 @@ fn no_sample_is_lost_or_late_while_it_is_kept() {
     for pair in bursts.windows(2) {
         let apart = pair[1].at - pair[0].at;
         let off = apart.abs_diff(MILLISECOND);
-        assert!(off < 20 * MICROSECOND, "{} s apart", time::seconds(apart));
+        // One that was asked for too early is asked for again.
+        assert!(off < 140 * MICROSECOND, "{} s apart", time::seconds(apart));
     }
     // Nor did any find its queue full on the way to the filter.
     run.board.chip().host.send(b"0");

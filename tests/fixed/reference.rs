@@ -3,7 +3,7 @@
 use crate::motion::{Motion, PERIOD};
 use crate::random::Random;
 use vrduino::calibration::GyroBias;
-use vrduino::fixed::complementary::{Bias, Complementary, Nanoseconds, Parameters};
+use vrduino::fixed::complementary::{Bias, Complementary, Force, Nanoseconds, Parameters};
 use vrduino::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use vrduino::orientation::{TimeConstant, complementary};
 use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample};
@@ -56,7 +56,7 @@ impl Pair {
     }
 
     pub fn reset(&mut self, raw: &RawSample) {
-        self.fixed.reset(raw.accel);
+        self.fixed.reset(Force::from_counts(raw.accel));
         self.reference.reset(self.ranges.sample(raw).force);
     }
 
@@ -153,5 +153,56 @@ fn it_follows_the_reference_in_every_range() {
                 worst(Motion::new(seed, ranges, about(seed), dps, 2.0), 7.6, true)
             });
         }
+    }
+}
+
+/// Beyond the range for nearly half of the time: both see what the registers hold.
+#[test]
+fn it_follows_the_reference_on_a_gyro_that_clips() {
+    check("clipped", |seed| {
+        worst(Motion::new(seed, FAST, about(seed), 8000.0, 3.0), 7.6, true)
+    });
+}
+
+/// A body that turns evenly about one of its axes for 20 s, and a sensor without noise: whatever is rounded off is
+/// rounded off the same way again and again. A rate below that of a count is what the bias leaves of none.
+fn evenly(dps: f64, axis: usize, start: UnitQuaternion<f64>) -> f64 {
+    let range = FAST.gyro.max_dps();
+    let measured = (dps / range * 32768.0).round().clamp(-32768.0, 32767.0);
+    let mut gyro = [0; 3];
+    gyro[axis] = measured as i16;
+    let mut bias_parts = [0; 3];
+    if dps.abs() < range {
+        bias_parts[axis] = ((measured - dps / range * 32768.0) * 32768.0).round() as i32;
+    }
+    let mut rate_dps = Vector3::zeros();
+    rate_dps[axis] = dps;
+    let step = UnitQuaternion::from_scaled_axis(rate_dps * PERIOD.to_radians());
+    let mut pair = Pair::new(FAST, 7.6, bias_parts);
+    let mut truth = start;
+    let mut worst = 0.0;
+    for number in 0..SAMPLES {
+        truth *= step;
+        let mut raw = FAST.counts(&Sample {
+            rate: AngularRate::from_dps(rate_dps),
+            force: SpecificForce::from_g(truth.inverse() * Vector3::y()),
+        });
+        raw.gyro = gyro;
+        if number == 0 {
+            pair.reset(&raw);
+        }
+        worst = f64::max(worst, pair.update(&raw));
+    }
+    worst
+}
+
+#[test]
+fn it_follows_the_reference_on_even_turns_without_noise() {
+    for dps in [0.001, 0.01, 0.1, 1.0, -7.0, 90.0, 1000.0, 2300.0] {
+        let worst = (0..9_u64)
+            .map(|case| evenly(dps, case as usize % 3, about(case / 3)))
+            .fold(0.0, f64::max);
+        println!("{dps} degrees per second: {worst:.2e} degrees at most");
+        assert!(worst <= ALLOWED, "{dps}: {worst:e} degrees");
     }
 }

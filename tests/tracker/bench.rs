@@ -23,6 +23,8 @@ pub struct Bench {
     pub health: Health,
     /// Every line with the number of the sample that led to it, from 1.
     pub lines: Vec<(u32, String)>,
+    /// Every packet of frames, the same.
+    pub frames: Vec<(u32, Vec<u8>)>,
     pub samples: u32,
 }
 
@@ -32,6 +34,7 @@ impl Bench {
             tracker: Tracker::new(RANGES),
             health: Health::default(),
             lines: Vec::new(),
+            frames: Vec::new(),
             samples: 0,
         }
     }
@@ -48,10 +51,12 @@ impl Bench {
         for i in 0..samples {
             self.samples += 1;
             let (at, lines) = (self.samples, &mut self.lines);
-            self.tracker
+            let frame = self
+                .tracker
                 .update(&raw(i), None, &self.health, &mut |line| {
                     lines.push((at, line.to_string()));
                 });
+            self.frames.extend(frame.map(|frame| (at, frame.to_vec())));
         }
     }
 

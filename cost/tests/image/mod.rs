@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use object::{Object, ObjectSection, ObjectSymbol};
+use vrduino_cost::subject::OURS;
 use vrduino_emulator::board::{Board, Setup};
-use vrduino_emulator::firmware::{self, BuildOptions, Package};
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::turns::Turns;
 use vrduino_emulator::time::MILLISECOND;
@@ -17,16 +17,9 @@ pub struct Counted(pub &'static str);
 
 impl Counted {
     fn path(self) -> PathBuf {
-        static FOLDER: OnceLock<PathBuf> = OnceLock::new();
-        let folder = FOLDER.get_or_init(|| {
-            let package = Package {
-                name: "vrduino-cost",
-                feature: "image",
-            };
-            firmware::build_package(package, BuildOptions { quiet: true })
-                .expect("the images build")
-        });
-        folder.join(self.0)
+        static BUILT: OnceLock<PathBuf> = OnceLock::new();
+        let filters = BUILT.get_or_init(|| OURS.build().expect("the images build"));
+        filters.with_file_name(self.0)
     }
 
     fn open(self) -> Image {

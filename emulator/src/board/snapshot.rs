@@ -85,6 +85,12 @@ impl Board {
             polling: self.polling.clone(),
             watch: Watch::default(),
             stack_limit: self.stack_limit,
+            latencies: self.latencies.clone(),
+            taken: self.taken.clone(),
+            armed: self.armed,
+            usb_table: self.usb_table,
+            profile: self.profile.clone(),
+            began: self.began,
         }
     }
 

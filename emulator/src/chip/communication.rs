@@ -7,6 +7,7 @@ use crate::peripherals::pins::Pins;
 use crate::peripherals::spi::Spi;
 use crate::peripherals::uart::Uart;
 use crate::time::{NEVER, Ticks};
+use crate::witness::Witness;
 
 /// Pins of UART0 to UART2, all with MUX 3: interface, transmits, port (A is 0), bit (K20 manual, chapter "Signal
 /// Multiplexing").
@@ -98,7 +99,7 @@ impl Communication {
             .min(self.i2c1.next_event())
     }
 
-    pub(super) fn advance(&mut self, pins: &Pins, clocks: &Clocks) {
+    pub(super) fn advance(&mut self, pins: &Pins, clocks: &Clocks, witness: &mut Witness) {
         for (n, uart) in self.uarts.iter_mut().enumerate() {
             if uart.next_event() <= clocks.now {
                 let connected = Communication::connected(pins, n, true);
@@ -112,6 +113,7 @@ impl Communication {
                 &pins.second_bus(),
                 &mut Nobody,
                 &mut Journal::default(),
+                witness,
             );
         }
     }

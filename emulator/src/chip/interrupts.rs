@@ -72,8 +72,13 @@ impl Chip {
 pub fn interrupt_name(number: u16) -> Option<&'static str> {
     const PIT: [&str; 4] = ["PIT0", "PIT1", "PIT2", "PIT3"];
     const PORTS: [&str; 5] = ["PORTA", "PORTB", "PORTC", "PORTD", "PORTE"];
+    const CHANNELS: [&str; 16] = [
+        "DMA0", "DMA1", "DMA2", "DMA3", "DMA4", "DMA5", "DMA6", "DMA7", "DMA8", "DMA9", "DMA10",
+        "DMA11", "DMA12", "DMA13", "DMA14", "DMA15",
+    ];
     let number = u32::from(number);
     Some(match number {
+        irq::DMA..=15 => CHANNELS[number as usize],
         irq::FTFL => "FTFL",
         irq::I2C0 => "I2C0",
         irq::I2C1 => "I2C1",

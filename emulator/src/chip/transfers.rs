@@ -35,6 +35,8 @@ impl Chip {
         match source {
             2..=7 => self.communication.uarts[(n - 2) / 2].dma_request(n % 2 == 1),
             16 | 17 => self.communication.spi.dma_request(source == 17),
+            22 => self.i2c.dma_request(),
+            23 => self.communication.i2c1.dma_request(),
             24..=31 => self.timers.flex[0].dma_request(n - 24),
             32 | 33 => self.timers.flex[1].dma_request(n - 32),
             34 | 35 => self.timers.flex[2].dma_request(n - 34),

@@ -29,6 +29,7 @@ impl Cpu {
             registers: self.registers,
             before: self.before,
             code: self.code.clone(),
+            code_in_ram: self.code_in_ram.clone(),
             timing: self.timing.clone(),
             pace: self.pace,
             owed: self.owed,

@@ -14,6 +14,7 @@ const SLV_3_FIFO_EN: u8 = 1 << 5;
 impl Mpu9250 {
     /// Stores a sample.
     pub(super) fn sample(&mut self, at: Ticks) {
+        self.last_ready = at;
         let counts = self.path.counts(&self.registers);
         let before = [0, 2, 4].map(|offset| self.registers.word(ACCEL_XOUT_H + offset));
         for (axis, value) in (0..).zip(counts.accel) {

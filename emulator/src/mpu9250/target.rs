@@ -1,6 +1,7 @@
 //! The bus interface: registers as a master sees them (PS 7.2 and 7.3).
 
 use super::complaint::Complaint;
+use super::interrupts::RAW_DATA_RDY;
 use super::registers::*;
 use super::{ADDRESS, Burst, FIFO_ENABLED, Mpu9250, RESET_TIME, ak8963};
 use crate::peripherals::i2c::Target;
@@ -16,6 +17,9 @@ const SIG_COND_RST: u8 = 1 << 0;
 /// Output registers and external sensor data: they hold still while they are read (RM 4.22, "SyncR").
 const SHADOWED: usize = (EXT_SENS_DATA_23 - ACCEL_XOUT_H) as usize + 1;
 
+/// INT_STATUS to GYRO_ZOUT_L.
+const BURST: usize = 15;
+
 /// Whom the running transfer is with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Partner {
@@ -26,6 +30,14 @@ enum Partner {
     Magnetometer,
 }
 
+/// A burst from INT_STATUS on that is being read.
+#[derive(Debug, Clone)]
+struct Reading {
+    at: Ticks,
+    ready: Ticks,
+    bytes: Vec<u8>,
+}
+
 /// The transfer on the bus.
 #[derive(Debug, Clone)]
 pub struct Transfer {
@@ -34,7 +46,7 @@ pub struct Transfer {
     first_byte: bool,
     /// Output registers as this transfer sees them.
     shadow: [u8; SHADOWED],
-    burst: Option<(Ticks, Vec<u8>)>,
+    burst: Option<Reading>,
     /// What is being read of the magnetometer.
     field: Vec<u8>,
 }
@@ -186,12 +198,13 @@ impl Mpu9250 {
     }
 
     fn end_burst(&mut self) {
-        if let Some((at, bytes)) = self.transfer.burst.take()
+        if let Some(Reading { at, ready, bytes }) = self.transfer.burst.take()
             && let Some(recording) = &mut self.recording
             && let Ok(bytes) = bytes.try_into()
         {
             recording.push(Burst {
                 at,
+                ready,
                 bytes,
                 field: None,
             });
@@ -215,7 +228,11 @@ impl Target for Mpu9250 {
                 .shadow
                 .copy_from_slice(self.registers.range(ACCEL_XOUT_H, SHADOWED as u8));
             if byte & 1 != 0 && self.transfer.pointer == INT_STATUS {
-                self.transfer.burst = Some((now, Vec::with_capacity(15)));
+                self.transfer.burst = Some(Reading {
+                    at: now,
+                    ready: self.last_ready,
+                    bytes: Vec::with_capacity(BURST),
+                });
             }
         }
         self.transfer.partner != Partner::Nobody
@@ -257,8 +274,11 @@ impl Target for Mpu9250 {
             Partner::Registers => {
                 let byte = self.read_register(self.transfer.pointer, now);
                 self.transfer.next();
-                if let Some((_, bytes)) = &mut self.transfer.burst {
+                if let Some(Reading { ready, bytes, .. }) = &mut self.transfer.burst {
                     bytes.push(byte);
+                    if bytes.len() == BURST && bytes[0] & RAW_DATA_RDY != 0 {
+                        self.fetched = Some(*ready);
+                    }
                 }
                 byte
             }

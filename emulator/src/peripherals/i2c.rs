@@ -1,5 +1,5 @@
 //! Inter-integrated circuit module as a master (K20 manual, chapter 46): every byte takes its nine bit times, and the
-//! flags rise only then.
+//! flags rise only then. With DMAEN the end of a byte asks for a transfer instead of an interrupt (section "DMA support").
 
 use super::pins::{Pins, Wiring};
 use crate::journal::{Happening, I2cByte, Journal};
@@ -17,6 +17,7 @@ const MST: u8 = 1 << 5;
 const TX: u8 = 1 << 4;
 const TXAK: u8 = 1 << 3;
 const RSTA: u8 = 1 << 2;
+const DMAEN: u8 = 1 << 0;
 
 const TCF: u8 = 1 << 7;
 const BUSY: u8 = 1 << 5;
@@ -64,6 +65,8 @@ pub struct I2c {
     running: Option<(Transfer, Ticks)>,
     /// The last byte read was acknowledged, so the target goes on sending.
     more_promised: bool,
+    /// Time taken by transfers.
+    busy: Ticks,
 }
 
 /// The module counts SCL's high time from when it sees the line high, so the line's rise lengthens every period. The
@@ -86,9 +89,25 @@ impl I2c {
         self.running.map_or(NEVER, |(_, at)| at)
     }
 
-    /// Whether the module asks for its interrupt.
+    /// Whether the module asks for its interrupt. With DMAEN only lost arbitration does.
     pub fn interrupt(&self) -> bool {
-        self.registers[C1 as usize] & IICIE != 0 && self.status & IICIF != 0
+        let asks = if self.control() & DMAEN != 0 {
+            ARBL
+        } else {
+            IICIF
+        };
+        self.control() & IICIE != 0 && self.status & asks != 0
+    }
+
+    /// Whether the module asks for a transfer: a byte is complete, and nobody has fetched or replaced it.
+    pub fn dma_request(&self) -> bool {
+        const WANTED: u8 = IICEN | IICIE | DMAEN;
+        self.control() & WANTED == WANTED && self.status & TCF != 0
+    }
+
+    /// Time in which the bus was not free, since the reset (ticks).
+    pub fn busy_time(&self) -> Ticks {
+        self.busy
     }
 
     fn control(&self) -> u8 {
@@ -109,6 +128,7 @@ impl I2c {
         pins: &Pins,
         target: &mut dyn Target,
         journal: &mut Journal,
+        witness: &mut Witness,
     ) {
         let Some((transfer, at)) = self.running else {
             return;
@@ -139,6 +159,12 @@ impl I2c {
             Transfer::Read => {
                 self.data = if connected { target.read(now) } else { 0xFF };
                 self.more_promised = self.control() & TXAK == 0;
+                if !self.more_promised && self.control() & DMAEN != 0 {
+                    witness.saw(
+                        Trap::I2cDmaLastByte,
+                        "the byte that TXAK leaves unacknowledged ended with DMAEN set",
+                    );
+                }
                 self.more_promised
             }
         };
@@ -169,7 +195,7 @@ impl I2c {
                         Trap::I2cDataEarly,
                         "D was read while its byte was still on its way",
                     ),
-                    None if receiving => self.begin(Transfer::Read, now + self.bits(9, bus_hz)),
+                    None if receiving => self.begin(Transfer::Read, now, self.bits(9, bus_hz)),
                     _ => {}
                 }
                 u32::from(value)
@@ -178,10 +204,11 @@ impl I2c {
         }
     }
 
-    fn begin(&mut self, transfer: Transfer, until: Ticks) {
+    fn begin(&mut self, transfer: Transfer, now: Ticks, length: Ticks) {
         self.status &= !TCF;
         self.more_promised = false;
-        self.running = Some((transfer, until));
+        self.busy += length;
+        self.running = Some((transfer, now + length));
     }
 
     /// Writes an 8-bit register.
@@ -234,7 +261,7 @@ impl I2c {
         // A START takes about one more bit time before the first clock.
         let bits = if self.addressing { 10 } else { 9 };
         self.addressing = false;
-        self.begin(transfer, now + self.bits(bits, bus_hz));
+        self.begin(transfer, now, self.bits(bits, bus_hz));
     }
 
     fn write_control(
@@ -253,6 +280,12 @@ impl I2c {
             self.more_promised = false;
             self.status = self.status & IICIF | TCF;
             return;
+        }
+        if value & !before & DMAEN != 0 && self.status & TCF != 0 {
+            witness.saw(
+                Trap::I2cDmaEarly,
+                "DMAEN was set while TCF still stood from the byte before",
+            );
         }
         let (was_master, is_master) = (before & MST != 0, value & MST != 0);
         if is_master && !was_master {

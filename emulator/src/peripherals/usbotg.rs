@@ -109,6 +109,8 @@ pub struct UsbController {
     address_to_come: Option<u8>,
     /// The pull-up was released since the host last looked.
     let_go: bool,
+    /// A packet of another endpoint than 0 has gone to the host since somebody last asked.
+    gone: bool,
     /// What happens on the bus, for those who watch; the time is the chip's to add.
     pub journal: Journal,
 }
@@ -137,6 +139,7 @@ impl UsbController {
             ownership: Ownership::default(),
             address_to_come: None,
             let_go: false,
+            gone: false,
             journal: Journal::default(),
         }
     }

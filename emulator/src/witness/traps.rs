@@ -198,6 +198,12 @@ traps! {
     /// The last byte read was acknowledged before STOP.
     I2cStopAfterAck "i2c-stop-after-ack"
         "a master receiver has to leave the last byte unacknowledged, else the target drives SDA and STOP may not come (I2C-bus specification 3.1.6)"
+    /// DMA requests were switched on over a byte that is complete already.
+    I2cDmaEarly "i2c-dma-early"
+        "requests come from the transfer complete flag: whether one that already stands asks at once is not documented, so DMAEN is set while a byte is on its way (K20 manual, I2C, DMA support)"
+    /// DMA was still on at the last byte.
+    I2cDmaLastByte "i2c-dma-last-byte"
+        "a master receiver has to leave DMA before the last byte ends, to set TXAK for it and to end the transfer (K20 manual, I2C, DMA support)"
     /// The bus runs faster than a device on it can.
     I2cTooFast "i2c-too-fast"
         "the MPU-9250's registers are accessed at 400 kHz at most (product specification, I2C timing)"

@@ -12,20 +12,18 @@
 //! * OUT descriptors carry DTS, so a packet that is repeated because its handshake was lost is
 //!   acknowledged and dropped by the controller.
 
-use core::cell::RefCell;
-use core::sync::atomic::Ordering;
-
-use critical_section::Mutex;
+use core::cell::UnsafeCell;
+use core::sync::atomic::{AtomicBool, Ordering};
 use mk20dx_hal::pac;
 use usb_device::bus::{PollResult, UsbBus};
 use usb_device::endpoint::{EndpointAddress, EndpointType};
 use usb_device::{Result, UsbDirection, UsbError};
 
-use super::buffers::{self, ENDPOINTS, PACKET, buffer, descriptor};
+use super::buffers::{self, ENDPOINTS, PACKET, descriptor};
 use super::endpoints::{Endpoints, Receive, Transmit};
 
 /// ISTAT flags, cleared by writing them as 1.
-mod flag {
+pub(super) mod flag {
     pub const STALL: u8 = 1 << 7;
     pub const RESUME: u8 = 1 << 5;
     pub const SLEEP: u8 = 1 << 4;
@@ -36,8 +34,11 @@ mod flag {
 }
 
 /// Interrupts while the bus is in use, and while it is suspended.
-const AWAKE: u8 = flag::STALL | flag::SLEEP | flag::TOKEN | flag::ERROR | flag::RESET;
+pub(super) const AWAKE: u8 = flag::STALL | flag::SLEEP | flag::TOKEN | flag::ERROR | flag::RESET;
 const SUSPENDED: u8 = flag::RESUME | flag::START_OF_FRAME | flag::RESET;
+
+/// STAT.TX: the token was an IN.
+pub(super) const TO_HOST: u8 = 1 << 3;
 
 /// Completed tokens that STAT can hold.
 const COMPLETED: usize = 4;
@@ -56,11 +57,16 @@ const NO_CONTROL: u8 = 1 << 4;
 
 /// The controller.
 pub struct Bus {
-    // Never contended: all of this runs in the USB interrupt. `usb-device` asks for `Sync` all the same.
-    state: Mutex<RefCell<Endpoints>>,
+    state: UnsafeCell<Endpoints>,
+    /// Frames are followed.
+    pub(super) frames: AtomicBool,
 }
 
-fn registers() -> &'static pac::usb0::RegisterBlock {
+// SAFETY: all of this runs in the USB interrupt, or in the main program while that is masked; and `with`, the only one
+// to reach for the state, does not call itself.
+unsafe impl Sync for Bus {}
+
+pub(super) fn registers() -> &'static pac::usb0::RegisterBlock {
     // SAFETY: the controller is always there, and Bus::new has taken the only handle on it.
     unsafe { &*pac::Usb0::PTR }
 }
@@ -76,20 +82,30 @@ impl Bus {
             .modify(|_, w| w.usbsrc().set_bit().pllfllsel().set_bit());
         sim.scgc4().modify(|_, w| w.usbotg().enabled());
         Bus {
-            state: Mutex::new(RefCell::new(Endpoints::default())),
+            state: UnsafeCell::new(Endpoints::default()),
+            frames: AtomicBool::new(false),
         }
     }
 
-    fn with<T>(&self, work: impl FnOnce(&mut Endpoints) -> T) -> T {
-        critical_section::with(|cs| work(&mut self.state.borrow_ref_mut(cs)))
+    pub(super) fn with<T>(&self, work: impl FnOnce(&mut Endpoints) -> T) -> T {
+        // SAFETY: see above.
+        work(unsafe { &mut *self.state.get() })
     }
 
-    fn clear(&self, flags: u8) {
+    /// Interrupts while the bus is in use.
+    pub(super) fn awake(&self) -> u8 {
+        match self.frames.load(Ordering::Relaxed) {
+            true => AWAKE | flag::START_OF_FRAME,
+            false => AWAKE,
+        }
+    }
+
+    pub(super) fn clear(&self, flags: u8) {
         // SAFETY: ISTAT takes any value; it clears the flags written as 1.
         registers().istat().write(|w| unsafe { w.bits(flags) });
     }
 
-    fn interrupts(&self, flags: u8) {
+    pub(super) fn interrupts(&self, flags: u8) {
         // SAFETY: INTEN takes any value.
         registers().inten().write(|w| unsafe { w.bits(flags) });
     }
@@ -111,19 +127,14 @@ impl Bus {
 
     /// One completed token.
     fn token(&self, status: u8) -> PollResult {
-        let (number, transmit) = (usize::from(status >> 4), status & 1 << 3 != 0);
+        let (number, transmit) = (usize::from(status >> 4), status & TO_HOST != 0);
         let bank = usize::from(status >> 2 & 1);
         let bit = 1u16 << number;
         if number >= ENDPOINTS {
             return PollResult::None;
         }
         if transmit {
-            self.with(|state| {
-                let endpoint = &mut state.transmit[number];
-                endpoint.busy = false;
-                endpoint.data1 = !endpoint.data1;
-                endpoint.bank = bank ^ 1;
-            });
+            self.sent(status);
             return PollResult::Data {
                 ep_out: 0,
                 ep_in_complete: bit,
@@ -151,10 +162,10 @@ impl Bus {
 
     /// A SETUP lies in `bank` of endpoint 0; the controller waits.
     fn setup(&self, bank: usize) {
-        let request = buffer(0, false, bank);
+        let mut request = buffers::received(0, bank);
         let (kind, number) = (
-            request[0].load(Ordering::Relaxed),
-            request[1].load(Ordering::Relaxed),
+            request.next().unwrap_or_default(),
+            request.next().unwrap_or_default(),
         );
         self.with(|state| {
             // Whatever was to be sent belongs to a transfer that is over.
@@ -234,7 +245,7 @@ impl UsbBus for Bus {
         self.control(ENABLE);
         // SAFETY: not suspended, no weak pull-downs.
         registers().usbctrl().write(|w| unsafe { w.bits(0) });
-        self.interrupts(AWAKE);
+        self.interrupts(self.awake());
         registers()
             .control()
             .write(|w| w.dppullupnonotg().set_bit());
@@ -289,7 +300,7 @@ impl UsbBus for Bus {
         self.clear(0xFF);
         // SAFETY: ERRSTAT takes any value; it clears the flags written as 1.
         registers().errstat().write(|w| unsafe { w.bits(0xFF) });
-        self.interrupts(AWAKE);
+        self.interrupts(self.awake());
         self.control(ENABLE);
     }
 
@@ -313,9 +324,7 @@ impl UsbBus for Bus {
             if endpoint.busy {
                 return Err(UsbError::WouldBlock);
             }
-            for (place, byte) in buffer(number, true, endpoint.bank).iter().zip(data) {
-                place.store(*byte, Ordering::Relaxed);
-            }
+            buffers::fill(number, endpoint.bank, data);
             endpoint.busy = true;
             descriptor(number, true, endpoint.bank).give(data.len(), endpoint.data1);
             Ok(data.len())
@@ -335,8 +344,9 @@ impl UsbBus for Bus {
             let bank = endpoint.bank;
             let descriptor = descriptor(number, false, bank);
             let count = descriptor.length();
-            for (byte, place) in data.iter_mut().zip(buffer(number, false, bank)).take(count) {
-                *byte = place.load(Ordering::Relaxed);
+            let received = buffers::received(number, bank);
+            for (place, byte) in data.iter_mut().zip(received).take(count) {
+                *place = byte;
             }
             endpoint.filled -= 1;
             endpoint.bank ^= 1;
@@ -395,7 +405,7 @@ impl UsbBus for Bus {
     }
 
     fn resume(&self) {
-        self.interrupts(AWAKE);
+        self.interrupts(self.awake());
     }
 
     fn poll(&self) -> PollResult {

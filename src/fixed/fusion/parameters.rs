@@ -25,17 +25,17 @@ impl Rates {
 
     /// Counts of the gyro per °/s.
     pub fn counts_per_dps(&self) -> f32 {
-        32768.0 / self.ranges.gyro.max_dps() as f32
+        self.ranges.gyro.counts_per_dps()
     }
 
     /// And per rad/s.
     pub fn counts_per_rad_per_s(&self) -> f32 {
-        self.counts_per_dps() / RADIANS_PER_DEGREE as f32
+        self.counts_per_dps() * const { (1.0 / RADIANS_PER_DEGREE) as f32 }
     }
 
     /// Counts of the accelerometer per g: 2¹¹ to 2¹⁴.
     pub fn counts_per_g(&self) -> f32 {
-        32768.0 / self.ranges.accel.max_g() as f32
+        f32::from(self.ranges.accel.counts_per_g())
     }
 }
 

@@ -160,13 +160,14 @@ fn run(arguments: &Arguments) -> Result<Option<Stop>, Error> {
         paced_since: None,
     };
     let mut script = arguments.script();
-    let mut heard = true;
+    let (mut heard, mut measuring) = (true, false);
     while limit.is_none_or(|limit| board.now() < limit)
         && (board.stop().is_none() || session.is_debugged())
         && board.in_loader().is_none()
         && !interrupted.load(Ordering::Relaxed)
         && heard
     {
+        tools.measure(&mut board, &mut measuring);
         let inputs = script.due(board.now());
         session.give(&mut board, inputs)?;
         let left = limit.map_or(MILLISECOND, |limit| limit - board.now());

@@ -8,6 +8,9 @@ use vrduino_emulator::time::{self, Ticks};
 
 use super::say;
 
+/// Functions of a profile that are told.
+const PROFILE_ROWS: usize = 40;
+
 /// Counts the stream's lines.
 pub struct Report {
     started: Instant,
@@ -109,9 +112,8 @@ impl Report {
             _ => {}
         }
         say!("resets  {}", board.resets());
-        let measure = board.measure();
-        let busy = |awake: u64| 100.0 * awake as f64 / board.now().max(1) as f64;
-        let load = (busy(measure.awake.least), busy(measure.awake.greatest));
+        let figures = board.figures();
+        let load = (100.0 * figures.load.0, 100.0 * figures.load.1);
         let rate = board.instructions() as f64 / emulated.max(1e-9) / 1e6;
         if load.0 > 99.9 {
             say!("cpu     never sleeps, {rate:.1} million instructions a second");
@@ -122,9 +124,21 @@ impl Report {
                 load.1
             );
         }
-        let stack = board.image().stack.saturating_sub(measure.stack_low);
-        say!("stack   {stack} bytes at its deepest");
-        for (number, latency) in INTERRUPTS.iter().zip(&measure.latencies) {
+        say!("stack   {} bytes at its deepest", figures.stack);
+        say!("bus     {:.1} % in use, I2C", 100.0 * figures.bus);
+        let ways = [
+            ("to the packet at its endpoint", figures.latency),
+            ("to the host", figures.to_host),
+        ];
+        for (way, times) in ways {
+            if let Some(times) = times {
+                let [median, most, worst] = times.map(|seconds| 1e3 * seconds);
+                say!(
+                    "latency {median:.3} ms from data-ready {way} in the median, {most:.3} ms at 99 %, {worst:.3} ms at worst"
+                );
+            }
+        }
+        for (number, latency) in INTERRUPTS.iter().zip(&board.measure().latencies) {
             if latency.count > 0 {
                 say!(
                     "irq     {} taken {} times, after {:.2} µs at worst",
@@ -133,6 +147,14 @@ impl Report {
                     time::seconds(latency.worst) * 1e6
                 );
             }
+        }
+        for (name, share) in board.profiled().iter().take(PROFILE_ROWS) {
+            say!(
+                "profile {:>10} instructions, {:>10} to {:>10} cycles in {name}",
+                share.instructions,
+                share.cycles.least,
+                share.cycles.greatest
+            );
         }
         say!("hash    {:016x}", board.state_hash());
         let calls = &board.measure().calls;

@@ -36,6 +36,14 @@ pub struct Tools {
     #[arg(long, value_name = "FILE", requires = "trace")]
     pub trace_file: Option<PathBuf>,
 
+    /// Count load, bus, latency and profile from this time on, in seconds
+    #[arg(long, value_name = "S", default_value = "0", value_parser = positive)]
+    pub measure_from: f64,
+
+    /// Tell where the time goes, by function
+    #[arg(long)]
+    pub profile: bool,
+
     /// Write the lines of the sensor bus and of USB, sleep and interrupts to this file, for GTKWave
     #[arg(long, value_name = "FILE")]
     pub vcd: Option<PathBuf>,
@@ -88,6 +96,17 @@ impl Tools {
         let door = TcpPort::open(port).map_err(|error| taken(port, &error))?;
         say!("tcp     {}", door.address()?);
         Ok(Some(door))
+    }
+
+    /// Begins to measure once it is time; `begun` tells whether it has begun.
+    pub fn measure(&self, board: &mut Board, begun: &mut bool) {
+        if !*begun && board.now() >= time::ticks(self.measure_from) {
+            *begun = true;
+            board.begin_figures();
+            if self.profile {
+                board.profile();
+            }
+        }
     }
 
     /// Lets everything that is wanted watch the board.

@@ -17,8 +17,27 @@ struct Transaction<'a> {
 }
 
 impl UsbController {
-    fn table(&self) -> u32 {
+    /// Address of the buffer descriptor table.
+    pub fn table(&self) -> u32 {
         u32::from_be_bytes([self.bdt_page[2], self.bdt_page[1], self.bdt_page[0], 0])
+    }
+
+    /// Whether the word at `address` is the status of a descriptor, by which the program has just given the controller a
+    /// packet for the host, on another endpoint than 0. A bank that has to wait for its turn counts as well.
+    pub fn is_armed_by(&self, address: u32, ram: &Ram) -> bool {
+        const ENTRY: u32 = 8;
+        let offset = address.wrapping_sub(self.table());
+        let index = offset / ENTRY;
+        let transmits = index & 2 != 0;
+        (4..64).contains(&index)
+            && offset.is_multiple_of(ENTRY)
+            && transmits
+            && Descriptor::read(address, ram).is_some_and(Descriptor::is_owned)
+    }
+
+    /// Whether the host has begun to take a packet, of another endpoint than 0, since this was last asked.
+    pub fn take_gone(&mut self) -> bool {
+        std::mem::take(&mut self.gone)
     }
 
     /// Looks whether the program has touched what the controller owns, in both banks of an endpoint.
@@ -173,6 +192,8 @@ impl UsbController {
         self.complete(transaction, length, Pid::In);
         if place.endpoint == 0 {
             self.address_to_come = None;
+        } else {
+            self.gone = true;
         }
         Answer::Data(data, descriptor.data1())
     }

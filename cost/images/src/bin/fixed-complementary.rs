@@ -6,7 +6,7 @@
 #![no_std]
 #![no_main]
 
-#[path = "../../../src/board/multiply.rs"]
+#[path = "../../../../src/board/multiply.rs"]
 mod multiply;
 #[path = "../watchdog.rs"]
 mod watchdog;
@@ -18,11 +18,11 @@ use panic_halt as _;
 use vrduino::fixed::complementary::Complementary;
 use vrduino::fixed::multiply::{Multiply, Portable};
 use vrduino::sensor::RawSample;
-use vrduino_cost::{Motion, Random, SAMPLES};
+use vrduino_cost_images::motion::{Motion, Random, SAMPLES};
 
 /// w, x, y, z at the end of each motion, as the bits of Q30.
 #[unsafe(no_mangle)]
-static ORIENTATIONS: [AtomicU32; 12] = [const { AtomicU32::new(0) }; 12];
+static ORIENTATIONS: [AtomicU32; 16] = [const { AtomicU32::new(0) }; 16];
 
 /// Samples after which the two were not the same.
 #[unsafe(no_mangle)]

@@ -7,7 +7,7 @@
 #![no_std]
 #![no_main]
 
-#[path = "../../../src/board/multiply.rs"]
+#[path = "../../../../src/board/multiply.rs"]
 mod multiply;
 #[path = "../watchdog.rs"]
 mod watchdog;
@@ -19,8 +19,8 @@ use panic_halt as _;
 use vrduino::fixed::fusion::{Field, Fusion};
 use vrduino::fixed::multiply::Portable;
 use vrduino::sensor::RawSample;
-use vrduino_cost::Random;
-use vrduino_cost::fusion::{Motion, SAMPLES};
+use vrduino_cost_images::fusion::{Motion, SAMPLES};
+use vrduino_cost_images::motion::Random;
 
 /// w, x, y, z at the end of each motion, as the bits of Q30.
 #[unsafe(no_mangle)]

@@ -1,6 +1,6 @@
 //! Motions for the default estimator.
 
-use crate::Random;
+use crate::motion::Random;
 use vrduino::fixed::fusion::{Field, Force, Fusion, Nanoseconds, Parameters, Rates};
 use vrduino::fixed::multiply::Multiply;
 use vrduino::imu::RANGES;
