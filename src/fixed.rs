@@ -1,5 +1,6 @@
 //! Estimators in integers, for a core without a floating-point unit: the same filters as in
-//! [`orientation`](crate::orientation), which define what is right, at a hundredth of the cost.
+//! [`orientation`](crate::orientation) and [`fusion`](crate::fusion), which define what is right, at a hundredth of
+//! the cost.
 //!
 //! | file | what it is |
 //! |---|---|
@@ -11,7 +12,7 @@
 //! | `inclination` | how far from level, eq. 20–23 |
 //! | `complementary` | the filter of eq. 24 |
 //! | `turn` | turns about the vertical |
-//! | `measurement` | forces and fields that have been corrected |
+//! | `measurement`, `affine` | forces and fields, and how they are corrected |
 //! | `fusion` | the estimator that is streamed by default |
 //!
 //! # Formats
@@ -54,5 +55,7 @@ pub mod complementary;
 mod turn;
 
 pub mod measurement;
+
+pub mod affine;
 
 pub mod fusion;

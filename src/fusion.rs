@@ -94,6 +94,13 @@ impl<T: RealField + Copy> Fusion<T> {
         self.heading.tune(parameters, self.rates.field);
     }
 
+    /// The time between two samples as it was measured, which is what the gyro turns for. The filters go
+    /// on with weights for the nominal one until they are tuned: a hundredth of a time constant.
+    pub fn set_sample_period(&mut self, period: Seconds<T>) {
+        self.rates.sample = period;
+        self.inclination.set_sample_period(period);
+    }
+
     /// One sample with the gyro's bias still in it, body frame; every so often with a field,
     /// corrected for iron and in the body's axes.
     ///

@@ -1,7 +1,17 @@
 //! The default estimator in integers, from counts to a quaternion without floating point.
 //!
 //! What it computes is [`crate::fusion`], which is the one to read first: the files are the same, and so are
-//! the names. Here everything is in counts of the sensor, and in steps of a block that none takes long.
+//! the names. Here everything is in counts of the sensor, and what is rounded off is carried over wherever it would
+//! add up. Counts have no values that would have to be refused.
+//!
+//! | limit | of | beyond it |
+//! |---|---|---|
+//! | 7.1 ms at ±2000 °/s, in proportion more at the others | sample period | is taken for it |
+//! | 0.05 s at 1 kHz and ±16 g, in proportion less at the others | `tilt_time` times `damping` | is taken for it |
+//! | 2 samples, or blocks of 8 | time of any low-pass | is taken for it |
+//! | half the range | `largest_bias_dps` | is taken for it |
+//! | 114 ms at ±2000 °/s, in proportion more at the others | `lead` | is taken for it |
+//! | ±2¹⁵ µT | field | is taken for it |
 //!
 //! | quantity | format |
 //! |---|---|
@@ -262,7 +272,7 @@ impl<M: Multiply> Fusion<M> {
     fn unled(&self) -> [Q<M, 30>; 4] {
         let [c, s] = self.heading.turn().halves();
         let turn = [c, Q::ZERO, s, Q::ZERO];
-        product(turn, self.inclination.orientation().upper())
+        product(turn, self.inclination.unit().upper())
     }
 
     /// Takes the tilt this force (body frame) shows, and from now on looks straight ahead with the

@@ -55,6 +55,10 @@ impl<T: RealField + Copy> Inclination<T> {
         self.coefficients = Coefficients::new(parameters, period);
     }
 
+    pub fn set_sample_period(&mut self, period: Seconds<T>) {
+        self.coefficients.half_period = size(period.0) * convert(0.5);
+    }
+
     /// One sample, body frame, bias removed.
     ///
     /// 1. q ← q exp(ωΔt/2) (eq. 17 and 18 of the course notes);

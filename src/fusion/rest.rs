@@ -235,7 +235,7 @@ impl<T: RealField + Copy> Rest<T> {
         self.motion
     }
 
-    /// Forgets what it saw, but not since when the board moves. A rest is over.
+    /// Forgets what it saw, but not since when the board moves. The next block ends a rest.
     pub fn restart(&mut self) {
         self.block = (Vector3::zeros(), Vector3::zeros());
         self.mean = None;

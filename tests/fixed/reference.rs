@@ -1,14 +1,14 @@
 //! Beside the readable filter in double precision, on the same counts.
 
+use crate::motion::{Motion, PERIOD};
 use crate::random::Random;
 use vrduino::calibration::GyroBias;
 use vrduino::fixed::complementary::{Bias, Complementary, Force, Nanoseconds, Parameters};
 use vrduino::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use vrduino::orientation::{TimeConstant, complementary};
-use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample, Sample};
-use vrduino::units::{AngularRate, Seconds, SpecificForce};
+use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample};
+use vrduino::units::{AngularRate, Seconds};
 
-const PERIOD: f64 = 1e-3;
 const SAMPLES: usize = 20_000;
 const SEEDS: u64 = 24;
 /// What the integers may be off by, in degrees.
@@ -69,69 +69,12 @@ impl Pair {
     }
 }
 
-/// A body that turns by sines about each of its axes, and a sensor with noise.
-struct Motion {
-    random: Random,
-    ranges: Ranges,
-    truth: UnitQuaternion<f64>,
-    amplitude_dps: [f64; 3],
-    hertz: [f64; 3],
-    bias_dps: [f64; 3],
-    step: usize,
-}
-
-impl Motion {
-    fn new(seed: u64, ranges: Ranges, start: UnitQuaternion<f64>, dps: f64, hertz: f64) -> Self {
-        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
-        for _ in 0..10 {
-            random.unit();
-        }
-        Self {
-            amplitude_dps: [(); 3].map(|()| dps * random.between(0.3, 1.0)),
-            hertz: [(); 3].map(|()| hertz * random.between(0.3, 1.0)),
-            bias_dps: random.vector(5.0),
-            random,
-            ranges,
-            truth: start,
-            step: 0,
-        }
-    }
-
-    /// About normal, with a deviation of 1.
-    fn noise(&mut self) -> f64 {
-        (0..12).map(|_| self.random.unit()).sum::<f64>() - 6.0
-    }
-
-    fn next(&mut self) -> RawSample {
-        let t = self.step as f64 * PERIOD;
-        self.step += 1;
-        let axes = Vector3::new(0, 1, 2);
-        let dps = axes.map(|axis: usize| {
-            self.amplitude_dps[axis] * (core::f64::consts::TAU * self.hertz[axis] * t).sin()
-        });
-        self.truth *= UnitQuaternion::from_scaled_axis(dps * (PERIOD.to_radians()));
-        let up = self.truth.inverse() * Vector3::y();
-        let measured_dps = dps + axes.map(|axis: usize| self.bias_dps[axis] + 0.1 * self.noise());
-        let measured_g = up + axes.map(|_: usize| 0.005 * self.noise());
-        self.ranges.counts(&Sample {
-            rate: AngularRate::from_dps(measured_dps),
-            force: SpecificForce::from_g(measured_g),
-        })
-    }
-
-    /// In 2⁻¹⁵ counts, as a measurement of it would have it.
-    fn bias_parts(&self) -> [i32; 3] {
-        let parts_per_dps = f64::from(1 << 30) / self.ranges.gyro.max_dps();
-        self.bias_dps.map(|dps| (dps * parts_per_dps) as i32)
-    }
-}
-
-const FAST: Ranges = Ranges {
+pub const FAST: Ranges = Ranges {
     gyro: GyroRange::Dps2000,
     accel: AccelRange::G2,
 };
 
-fn about(seed: u64) -> UnitQuaternion<f64> {
+pub fn about(seed: u64) -> UnitQuaternion<f64> {
     let mut random = Random(seed * 77 + 5);
     UnitQuaternion::from_scaled_axis(Vector3::from(random.vector(1.5)))
 }

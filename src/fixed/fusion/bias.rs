@@ -16,6 +16,7 @@ use core::num::NonZeroU32;
 #[derive(Clone, Copy, Debug)]
 pub struct Bias<M> {
     coefficients: Coefficients<M>,
+    /// As it is subtracted, in the upper half, and what lies below.
     exact: WideVector<M, 47>,
     at_rest: Option<WideVector<M, 47>>,
     /// As it was at the last two marks of a rest: its end is the beginning of a motion.
@@ -222,9 +223,7 @@ impl<M: Multiply> Bias<M> {
     #[inline(never)]
     fn limit(&mut self) {
         let largest = self.coefficients.largest;
-        let Vector { x, y, z } = self.counts();
-        let limited = [x, y, z].map(|part| part.limited(largest));
-        let [x, y, z] = limited;
+        let [x, y, z] = self.counts().parts().map(|part| part.limited(largest));
         self.exact = WideVector::from_upper(Vector::new(x, y, z));
     }
 }

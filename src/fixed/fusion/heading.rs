@@ -117,8 +117,6 @@ impl<M: Multiply> Heading<M> {
 }
 
 fn low_pass<M: Multiply>(parameters: &Parameters<f32>, rates: &Rates) -> Q<M, 31> {
-    Q::nearest(low_pass_weight(
-        parameters.heading_time,
-        seconds(rates.field),
-    ))
+    let weight = low_pass_weight(parameters.heading_time, seconds(rates.field));
+    Q::nearest(weight).limited(per(NonZeroU32::MIN))
 }

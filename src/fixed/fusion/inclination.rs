@@ -1,7 +1,7 @@
 //! Tilt without drift from gyro and accelerometer; the heading is the gyro's.
 
 use super::super::division::per;
-use super::super::gyro::{Nanoseconds, Remainders, half_angle_per_count};
+use super::super::gyro::{Remainders, half_angle_per_count};
 use super::super::half_angle::{cosine_excess, sine_excess};
 use super::super::inclination::{Share, levelled};
 use super::super::multiply::Multiply;
@@ -69,7 +69,7 @@ impl<M: Multiply> Scaled<M> {
 
 /// Most that is corrected in a sample of a force at the end of its range on each axis, as a half angle, rad: eight
 /// such leave a quaternion that its format holds.
-const LARGEST_CORRECTION: f32 = 0.1;
+const LARGEST_CORRECTION: f32 = 0.2;
 
 /// Samples of the start whose corrections may be so large that each is followed by a root.
 const LARGE: u32 = 64;
@@ -109,7 +109,6 @@ impl<M: Multiply> Inclination<M> {
     }
 
     pub fn set_sample_period(&mut self, rates: &Rates) {
-        let Nanoseconds(_) = rates.sample;
         self.coefficients.half_angle_per_count =
             half_angle_per_count(rates.ranges.gyro, rates.sample);
     }
@@ -185,10 +184,18 @@ impl<M: Multiply> Inclination<M> {
         }
     }
 
-    /// Body to world.
+    /// Body to world, of a length that may be off by a millionth.
     #[inline(always)]
     pub fn orientation(&self) -> Quaternion<M> {
         self.orientation
+    }
+
+    /// The same of unit length.
+    pub fn unit(&self) -> Quaternion<M> {
+        let q = self.orientation;
+        q.normalised_nearby()
+            .or_else(|| q.normalised_anywhere())
+            .unwrap_or(q)
     }
 
     /// b, counts, as x and z of the force in the world: how far from level the last seconds were.

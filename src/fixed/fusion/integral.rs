@@ -34,13 +34,13 @@ struct Coefficients<M> {
     low_pass: Q<M, 32>,
     /// Largest error of tilt, counts of the accelerometer.
     largest: Q<M, 10>,
-    /// Gain in [`DECIMATION`] samples, counts of the gyro per count of the accelerometer, as Q34.
+    /// Gain in [`DECIMATION`] samples, counts of the gyro per count of the accelerometer.
     tilt: Q<M, 34>,
     /// That of the start, times samples.
     tilt_start: Quotient,
     /// Samples in a second.
     tilt_second: NonZeroU32,
-    /// Gains in a field, counts of the gyro, as Q28.
+    /// Gains in a field, counts of the gyro.
     heading: Q<M, 28>,
     /// That of the start, times fields.
     heading_start: Quotient,
@@ -127,7 +127,7 @@ impl<M: Multiply> Integral<M> {
         self.coefficients = Coefficients::new(parameters, rates);
     }
 
-    /// Once in a block, at rest or not.
+    /// Once in a block, at rest or not, but not in the first second, in which the tilt is still being found.
     #[inline(always)]
     pub fn follow(&mut self, inclination: &Inclination<M>) {
         self.age = self.age.saturating_add(DECIMATION);
@@ -146,8 +146,8 @@ impl<M: Multiply> Integral<M> {
         self.fresh = false;
     }
 
-    /// Then what the error of tilt says of how far the bias is off, times the gain, along two axes of the body.
-    /// Not in the first second, in which the tilt is still being found.
+    /// Then what the error of tilt says of how far the bias is off, counts of the gyro, times the gain, along two
+    /// axes of the body.
     #[inline(always)]
     pub fn of_tilt(
         &mut self,
@@ -164,8 +164,8 @@ impl<M: Multiply> Integral<M> {
         [(about_x, axis_x), (about_z, axis_z)]
     }
 
-    /// With every field that tells of the heading: what its error, a sine, says of the bias, as above, along the
-    /// vertical. None in the compass's first second.
+    /// With every field that tells of the heading: what its error, a sine, says of the bias, as above, but along
+    /// the vertical. None in the compass's first second.
     #[inline(always)]
     pub fn of_heading(&mut self, error: Q<M, 30>, source: Source) -> Option<Q<M, 20>> {
         let gain = self.heading_gain(source)?;

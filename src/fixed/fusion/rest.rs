@@ -251,7 +251,7 @@ impl<M: Multiply> Rest<M> {
         self.motion
     }
 
-    /// Forgets what it saw, but not since when the board moves. A rest is over.
+    /// Forgets what it saw, but not since when the board moves. The next block ends a rest.
     pub fn restart(&mut self) {
         self.block = Block::EMPTY;
         self.mean_rate = WideVector::ZERO;
