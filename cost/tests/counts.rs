@@ -14,9 +14,10 @@ use vrduino::fixed::multiply::Portable;
 
 /// Instructions of an update of the notes' filter in fixed point, with the multiply instructions.
 const COURSE_BUDGET: u64 = 215;
-/// The default estimator's with six axes, and with nine in a sample that has a field; after the first.
+/// The default estimator's with six axes, after the first sample.
 const DEFAULT_BUDGET: u64 = 360;
-const COMPASS_BUDGET: u64 = 640;
+/// The same with nine in a sample that has a field: 640, and the field's way from counts to units.
+const COMPASS_BUDGET: u64 = 660;
 /// What it may be off by, in degrees.
 const DEFAULT_ERROR: f64 = 0.002;
 const COMPASS_ERROR: f64 = 0.01;

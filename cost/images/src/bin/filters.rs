@@ -1,4 +1,5 @@
-//! Our filters, and the course's filter as others write it.
+//! Our filters, and the course's filter as others write it. Those in fixed point run from SRAM (`memory.x`), as in the
+//! tracker.
 
 #![no_std]
 #![no_main]
@@ -17,11 +18,17 @@ use vrduino_cost_images::straightforward::Straightforward;
 use vrduino_cost_images::textbook::Textbook;
 
 vrduino_cost_images::filters! {
+    #[unsafe(link_section = ".fast")]
     course_fixed: CourseInFixedPoint<Instructions>, on FEW of HEAD;
+    #[unsafe(link_section = ".fast")]
     course_fixed_portable: CourseInFixedPoint<Portable>, on FEW of HEAD;
+    #[unsafe(link_section = ".fast")]
     default_fixed: DefaultInFixedPoint<Instructions, false>, on SAMPLES of HEAD;
+    #[unsafe(link_section = ".fast")]
     default_fixed_portable: DefaultInFixedPoint<Portable, false>, on SAMPLES of HEAD;
+    #[unsafe(link_section = ".fast")]
     default_fixed_compass: DefaultInFixedPoint<Instructions, true>, on SAMPLES of HEAD;
+    #[unsafe(link_section = ".fast")]
     default_fixed_compass_portable: DefaultInFixedPoint<Portable, true>, on SAMPLES of HEAD;
     course_f32: Course<f32>, on FEW of HEAD;
     default_f32: Default<f32, false>, on SAMPLES of HEAD;
