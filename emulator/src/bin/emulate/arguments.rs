@@ -202,7 +202,7 @@ pub struct Script {
 impl Arguments {
     /// The function to time: the tracker's update of its estimators by one sample, unless another was named.
     pub fn timed(&self) -> &str {
-        self.time.as_deref().unwrap_or("Tracker::track")
+        self.time.as_deref().unwrap_or("Tracker<M>::track")
     }
 
     /// The sensor on the board.
