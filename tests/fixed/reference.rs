@@ -6,8 +6,8 @@ use vrduino::calibration::GyroBias;
 use vrduino::fixed::complementary::{Bias, Complementary, Force, Nanoseconds, Parameters};
 use vrduino::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use vrduino::orientation::{TimeConstant, complementary};
-use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample};
-use vrduino::units::{AngularRate, Seconds};
+use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample, Sample};
+use vrduino::units::{AngularRate, Seconds, SpecificForce};
 
 const SAMPLES: usize = 20_000;
 const SEEDS: u64 = 24;
