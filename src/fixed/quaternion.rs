@@ -75,13 +75,13 @@ impl<M: Multiply> Quaternion<M> {
     /// q (1 + c, s): a turn in the body's own axes by twice the angle of which s is the sine and 1 + c the cosine.
     #[inline(always)]
     pub fn rotated_in_body(self, c: Q<M, 32>, s: Vector<M, 32>) -> Self {
+        // Not by way of `turned_in_body`: part by part, fewer values wait.
         let [w, x, y, z] = self.upper();
-        let turned = self.turned_in_body(s);
         Self {
-            w: turned.w.plus(w, c),
-            x: turned.x.plus(x, c),
-            y: turned.y.plus(y, c),
-            z: turned.z.plus(z, c),
+            w: self.w.plus(x, -s.x).plus(y, -s.y).plus(z, -s.z).plus(w, c),
+            x: self.x.plus(w, s.x).plus(y, s.z).plus(z, -s.y).plus(x, c),
+            y: self.y.plus(w, s.y).plus(z, s.x).plus(x, -s.z).plus(y, c),
+            z: self.z.plus(w, s.z).plus(x, s.y).plus(y, -s.x).plus(z, c),
         }
     }
 
