@@ -39,8 +39,8 @@ pub const MODES: [Mode; 4] = [
     },
 ];
 
-/// Until the bias is measured and the head moves.
-const SETTLED: Ticks = 4 * SECOND;
+/// Until the bias is measured, the head moves, and the sampling has locked for two seconds.
+const SETTLED: Ticks = 6 * SECOND;
 
 /// How long is measured.
 pub const MEASURED_S: u64 = 3;
@@ -56,7 +56,7 @@ pub fn run(image: &Path, mode: &Mode) -> Result<Figures, Box<dyn Error>> {
         ..Setup::new(Box::new(Head::default()))
     };
     let mut board = Board::new(Image::open(image)?, setup);
-    until(&mut board, SETTLED - SECOND)?;
+    until(&mut board, SETTLED - 3 * SECOND)?;
     board.chip().host.send(mode.typed.as_bytes());
     until(&mut board, SETTLED)?;
     board.begin_figures();
