@@ -37,6 +37,7 @@ pub mod watchdog;
 use cortex_m::peripheral::NVIC;
 use mk20dx_hal::pac;
 use vrduino::calibration::record::Record;
+use vrduino::command::request::CoreClock;
 use vrduino::imu::magnetometer::MagnetometerError;
 use vrduino::sampling::Lock;
 use vrduino::sensor::magnetometer::{RawField, SensitivityAdjustment};
@@ -45,7 +46,7 @@ use vrduino::wire;
 
 use breadcrumb::Stage;
 use calibration::Calibration;
-use clock::Time;
+use clock::{Core, Time};
 use dma::Dma;
 use i2c::I2c;
 use imu::Imu;
@@ -74,6 +75,8 @@ pub struct Board {
     no_compass: Option<MagnetometerError<i2c::Error>>,
     introduced: bool,
     lock: Lock,
+    core: Core,
+    wanted_clock: CoreClock,
 }
 
 impl Board {
@@ -109,6 +112,8 @@ impl Board {
             no_compass: None,
             introduced: false,
             lock: Lock::default(),
+            core: Core::new(chip.sim),
+            wanted_clock: CoreClock::default(),
         }
     }
 
@@ -169,6 +174,11 @@ impl Board {
         }
     }
 
+    /// Runs the processor at this clock, once nothing is being written to flash.
+    pub fn run_at(&mut self, clock: CoreClock) {
+        self.wanted_clock = clock;
+    }
+
     /// Counters for the INFO lines.
     pub fn health(&self) -> Health {
         let counts = imu::counts();
@@ -194,6 +204,9 @@ impl Board {
     }
 
     fn look_around(&mut self, now: u32) {
+        if !self.calibration.is_busy() {
+            self.core.run_at(self.wanted_clock);
+        }
         self.led.heartbeat(now);
         self.loader.serve(self.usb.loader_asked(), now);
         if self.usb.was_opened() {

@@ -80,6 +80,7 @@ fn obey(board: &mut Board, tracker: &mut Tracker<Instructions>, first: Command) 
         next = board.usb.command();
     }
     board.lock_on(tracker.lock());
+    board.run_at(tracker.core());
     if let Some(record) = tracker.take_calibration_to_keep() {
         board.keep_calibration(&record);
     }

@@ -19,7 +19,7 @@ mod views;
 
 use crate::calibration::record::Record;
 use crate::calibration::{Reading, Rest, Stillness, Verdict};
-use crate::command::request::UseCompass;
+use crate::command::request::{CoreClock, UseCompass};
 use crate::command::{Command, Mode};
 use crate::fixed::fusion::{Field, Force, Nanoseconds};
 use crate::fixed::multiply::{Multiply, Portable};
@@ -94,6 +94,7 @@ pub struct Tracker<M = Portable> {
     counts: Tally,
     timing: Option<Timing>,
     lock: Lock,
+    core: CoreClock,
 }
 
 /// Whether there is an orientation, and what the next sample is to do to it.
@@ -153,6 +154,7 @@ impl<M: Multiply> Tracker<M> {
             counts: Tally::default(),
             timing: None,
             lock: Lock::default(),
+            core: CoreClock::default(),
         }
     }
 
@@ -217,6 +219,11 @@ impl<M: Multiply> Tracker<M> {
     /// What the host wants the sensor to be read by.
     pub fn lock(&self) -> Lock {
         self.lock
+    }
+
+    /// How fast the host wants the processor to run.
+    pub fn core(&self) -> CoreClock {
+        self.core
     }
 
     /// What is to be kept, once after each change of it.

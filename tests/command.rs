@@ -4,7 +4,7 @@
 mod random;
 
 use random::Random;
-use vrduino::command::request::{Choice, Format, Request, Setting, UseCompass};
+use vrduino::command::request::{Choice, CoreClock, Format, Request, Setting, UseCompass};
 use vrduino::command::{Command, Mode, Parser};
 use vrduino::sampling::Lock;
 use vrduino::wire::{Decimals, LINE_LEN, Provenance, Q30, frame};
@@ -83,6 +83,9 @@ fn every_verb_is_understood() {
         ("every", Request::Every(None)),
         ("every 1", Request::Every(Some(1))),
         ("every 1000", Request::Every(Some(1000))),
+        ("core", Request::Core(None)),
+        ("core 72", Request::Core(Some(CoreClock::Full))),
+        ("core 36", Request::Core(Some(CoreClock::Half))),
         ("lock", Request::Lock(None)),
         ("lock sensor", Request::Lock(Some(Lock::Sensor))),
         ("lock usb", Request::Lock(Some(Lock::Usb))),
@@ -121,6 +124,7 @@ fn a_refusal_names_the_word_and_fits_a_line() {
         ("", ": no such verb, :help lists them"),
         ("HELP", "HELP: no such verb, :help lists them"),
         ("estimator kalman", "kalman: default or notes is wanted"),
+        ("core 48", "48: 72 or 36 is wanted"),
         ("lock moon", "moon: sensor or usb is wanted"),
         ("compass maybe", "maybe: auto, on or off is wanted"),
         ("get tau", "tau: no such setting, :set lists them"),

@@ -116,7 +116,8 @@ fn no_double_precision_routine_is_linked() {
         .symbols()
         .filter_map(|symbol| symbol.name().ok())
         .filter(|name| name.contains("__aeabi_d") || name.contains("df3") || name.contains("2d"))
-        .filter(|name| name.starts_with("__"))
+        // What stands between two memories has the name and the hash of what it calls.
+        .filter(|name| name.starts_with("__") && !name.contains("Thunk"))
         .collect();
     assert!(doubles.is_empty(), "{doubles:?}");
 }

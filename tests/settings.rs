@@ -12,7 +12,7 @@ fn every_verb_is_answered() {
     for (line, answer) in [
         (
             ":help",
-            "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals stream every lock\n",
+            "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals stream every lock core\n",
         ),
         (
             ":version",

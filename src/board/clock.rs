@@ -1,4 +1,4 @@
-//! Clocks and time: 72 MHz core, 36 MHz bus, 24 MHz flash, and a count of milliseconds.
+//! Clocks and time: 72 MHz core, 36 MHz bus, 24 MHz flash, and a count of milliseconds. The core may run at 36 MHz.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -6,6 +6,7 @@ use cortex_m::peripheral::{DCB, DWT};
 use embedded_hal::delay::DelayNs;
 use mk20dx_hal::clocks::McgExt;
 use mk20dx_hal::pac;
+use vrduino::command::request::CoreClock;
 
 use super::timer;
 
@@ -50,9 +51,40 @@ pub fn start(mut dcb: DCB, mut dwt: DWT, mcg: pac::Mcg, osc: pac::Osc, sim: &pac
     dwt.enable_cycle_counter();
 }
 
+/// The processor's clock. Bus, timers and USB keep theirs.
+pub struct Core {
+    sim: pac::Sim,
+    clock: CoreClock,
+}
+
+impl Core {
+    /// As [`start`] has left it.
+    pub fn new(sim: pac::Sim) -> Core {
+        let clock = CoreClock::Full;
+        Core { sim, clock }
+    }
+
+    /// From now on so fast; not while something is written to flash.
+    pub fn run_at(&mut self, clock: CoreClock) {
+        if clock == self.clock {
+            return;
+        }
+        self.clock = clock;
+        // Divisors of the PLL's 72 MHz less one: core, bus, flash. Bus and flash clock have to be whole parts of the core's,
+        // and the latter is 25 MHz at most (K20 manual, clock definitions).
+        let (core, bus, flash) = match clock {
+            CoreClock::Full => (0, 1, 2),
+            CoreClock::Half => (1, 1, 3),
+        };
+        let dividers = core << 28 | bus << 24 | flash << 16;
+        // SAFETY: the ratios are allowed, before, after and between.
+        self.sim.clkdiv1().write(|w| unsafe { w.bits(dividers) });
+    }
+}
+
 /// A moment in the near future that bounds a wait.
 ///
-/// Counts core cycles, which stop while the core sleeps: for busy waits only.
+/// Counts core cycles, which stop while the core sleeps: for busy waits only. At half the clock it is twice as far.
 #[derive(Clone, Copy)]
 pub struct Deadline {
     start: u32,

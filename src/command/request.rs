@@ -42,6 +42,8 @@ pub enum Request {
     Every(Option<u16>),
     /// `:bias`: what the gyro reads at rest, and how that is known.
     Bias,
+    /// `:core` asks, `:core 72` and `:core 36` choose: the processor's clock in MHz.
+    Core(Option<CoreClock>),
     /// `:lock` asks, `:lock sensor` and `:lock usb` choose: what decides when the sensor is read.
     Lock(Option<Lock>),
 }
@@ -74,6 +76,26 @@ impl Format {
 
 /// Most samples a line or frame may stand for: a second.
 const MOST_EVERY: u16 = 1000;
+
+/// How fast the processor runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CoreClock {
+    /// 72 MHz.
+    #[default]
+    Full,
+    /// 36 MHz: the load doubles and the current falls.
+    Half,
+}
+
+impl CoreClock {
+    /// In MHz.
+    pub const fn mhz(self) -> u32 {
+        match self {
+            Self::Full => 72,
+            Self::Half => 36,
+        }
+    }
+}
 
 /// When the heading follows the magnetometer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -299,6 +321,12 @@ pub fn parse(line: &str) -> Result<Request, Refusal> {
                 Ok(samples @ 1..=MOST_EVERY) => Some(samples),
                 _ => return refuse(word, Reason::Wanted("1 to 1000")),
             },
+        }),
+        "core" => Request::Core(match next() {
+            None => None,
+            Some("72") => Some(CoreClock::Full),
+            Some("36") => Some(CoreClock::Half),
+            Some(other) => return refuse(other, Reason::Wanted("72 or 36")),
         }),
         "lock" => Request::Lock(match next() {
             None => None,

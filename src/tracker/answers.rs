@@ -2,7 +2,7 @@
 
 use super::Tracker;
 use super::estimators::Estimators;
-use crate::command::request::{Choice, Format, Refusal, Request, Setting, UseCompass};
+use crate::command::request::{Choice, CoreClock, Format, Refusal, Request, Setting, UseCompass};
 use crate::fixed::fusion::Fusion;
 use crate::fixed::multiply::Multiply;
 use crate::fusion::{Motion, Source};
@@ -18,7 +18,7 @@ impl<M: Multiply> Tracker<M> {
         match line {
             Err(refusal) => wire::text(format_args!("ERR {refusal}")),
             Ok(Request::Help) => wire::text(
-                "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals stream every lock",
+                "OK verbs: help version estimator get set defaults compass calibration keep forget bias decimals stream every lock core",
             ),
             Ok(Request::Version) => wire::text(concat!("OK vrduino ", env!("CARGO_PKG_VERSION"))),
             Ok(Request::Estimator(choice)) => {
@@ -37,6 +37,7 @@ impl<M: Multiply> Tracker<M> {
                 self.stream.set_defaults();
                 self.use_compass = UseCompass::default();
                 self.lock = Lock::default();
+                self.core = CoreClock::default();
                 wire::text("OK defaults")
             }
             Ok(Request::Compass(choice)) => {
@@ -77,6 +78,12 @@ impl<M: Multiply> Tracker<M> {
                 self.stream_state()
             }
             Ok(Request::Bias) => bias(estimators),
+            Ok(Request::Core(core)) => {
+                if let Some(core) = core {
+                    self.core = core;
+                }
+                wire::text(format_args!("OK core {} MHz", self.core.mhz()))
+            }
             Ok(Request::Lock(lock)) => {
                 if let Some(lock) = lock {
                     self.lock = lock;

@@ -166,3 +166,26 @@ fn locked_on_the_hosts_frames_a_sample_comes_in_each_and_the_odd_ones_are_counte
     let before = overruns(&mut run);
     assert_eq!(overruns(&mut run), before);
 }
+
+#[test]
+fn at_half_the_clock_the_load_doubles_and_the_latency_holds() {
+    let mut run = with(off(0.003), Pace::Greatest);
+    run.seconds(2.5);
+    let loads = [36, 72].map(|mhz| {
+        run.board
+            .chip()
+            .host
+            .send(format!(":core {mhz}\n").as_bytes());
+        run.wait_for(&format!("OK core {mhz} MHz"), 0.5);
+        run.seconds(0.5);
+        run.board.begin_figures();
+        run.seconds(1.5);
+        let figures = run.board.figures();
+        let [_, _, worst] = figures.latency.expect("there were packets");
+        assert!(worst < 0.65e-3, "{mhz} MHz: {figures:?}");
+        figures.load.1
+    });
+    assert!(loads[0] < 0.1, "{loads:?}");
+    assert!((1.7..2.1).contains(&(loads[0] / loads[1])), "{loads:?}");
+    assert_eq!((run.board.stop(), run.board.resets()), (None, 0));
+}
