@@ -7,6 +7,8 @@ mod job;
 
 mod reader;
 
+mod sampled;
+
 mod sampling;
 
 use core::fmt;
@@ -24,7 +26,8 @@ use super::dma::Dma;
 use super::i2c::{Error, I2c};
 use super::timer::Alarm;
 use super::watchdog::Watchdog;
-use sampling::{Outcome, Samples};
+use sampled::Outcome;
+use sampling::Samples;
 
 pub use sampling::{counts, lock_on};
 

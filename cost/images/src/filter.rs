@@ -1,7 +1,6 @@
 //! What a filter has to do to be counted, and what all of them are told.
 
-use crate::head::Counts;
-use vrduino::sensor::{AccelRange, GyroRange, Ranges};
+use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample};
 
 /// What the sensors were set to.
 pub const RANGES: Ranges = Ranges {
@@ -22,6 +21,18 @@ pub const BIAS_DPS: [f64; 3] = {
     }
     [dps(BIAS_PARTS[0]), dps(BIAS_PARTS[1]), dps(BIAS_PARTS[2])]
 };
+
+/// One sample of the three sensors: gyro at ±2000 °/s, accelerometer at ±2 g, magnetometer at 0.15 µT a count in its
+/// own axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Gyro and accelerometer.
+    pub sample: RawSample,
+    /// The field as of the last time it was measured.
+    pub field: [i16; 3],
+    /// Whether that was at this sample.
+    pub field_is_new: bool,
+}
 
 /// A filter from counts to an orientation. What the update takes is what is counted: the way from counts to units is
 /// part of it.

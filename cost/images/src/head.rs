@@ -3,7 +3,7 @@
 //! Computed by the compiler, without a function that differs from machine to machine: the host has the very counts
 //! that are in the chip's flash.
 
-use crate::filter::{BIAS_PARTS, PERIOD_S};
+use crate::filter::{BIAS_PARTS, Counts, PERIOD_S};
 use vrduino::sensor::RawSample;
 
 /// How many samples there are.
@@ -14,18 +14,6 @@ pub const FEW: usize = 1000;
 
 /// How many samples there are from one of the magnetometer to the next: 100 a second.
 pub const FIELD_EVERY: usize = 10;
-
-/// One sample of the three sensors: gyro at ±2000 °/s, accelerometer at ±2 g, magnetometer at 0.15 µT a count in its
-/// own axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counts {
-    /// Gyro and accelerometer.
-    pub sample: RawSample,
-    /// The field as of the last time it was measured.
-    pub field: [i16; 3],
-    /// Whether that was at this sample.
-    pub field_is_new: bool,
-}
 
 /// Level at the start: y up.
 pub static HEAD: [Counts; SAMPLES] = turning(false);

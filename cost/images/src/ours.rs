@@ -1,7 +1,7 @@
 //! The library's filters.
 
-use crate::filter::{BIAS_DPS, BIAS_PARTS, Filter, PERIOD_S, RANGES};
-use crate::head::{Counts, FIELD_EVERY};
+use crate::filter::{BIAS_DPS, BIAS_PARTS, Counts, Filter, PERIOD_S, RANGES};
+use crate::head::FIELD_EVERY;
 use vrduino::calibration::GyroBias;
 use vrduino::fixed::complementary::{self as fixed, Bias, Nanoseconds};
 use vrduino::fixed::fusion::{self, Field};

@@ -3,8 +3,8 @@
 //! A program made by [`filters!`](crate::filters) waits at the end of `main`. Whoever counts makes it go on at the
 //! function `run` of a filter's module, counts the calls of `update` beside it, and waits for `STATE`.
 
-use crate::filter::Filter;
-use crate::head::{Counts, SAMPLES};
+use crate::filter::{Counts, Filter};
+use crate::head::SAMPLES;
 use core::sync::atomic::{AtomicU32, Ordering};
 use mk20dx_hal::clocks::McgExt;
 use mk20dx_hal::pac::Peripherals;
@@ -68,7 +68,7 @@ macro_rules! filters {
 
                 $(#[$attribute])*
                 #[inline(never)]
-                pub fn update(filter: &mut $filter, counts: &$crate::head::Counts) {
+                pub fn update(filter: &mut $filter, counts: &$crate::filter::Counts) {
                     $crate::filter::Filter::update(filter, counts);
                 }
 

@@ -1,7 +1,6 @@
 //! The course's filter as it is written with nalgebra, in single precision.
 
-use crate::filter::{BIAS_DPS, Filter, PERIOD_S};
-use crate::head::Counts;
+use crate::filter::{BIAS_DPS, Counts, Filter, PERIOD_S};
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 
 /// 1 − α of eq. 24, of a time constant of 7.6 s.

@@ -1,8 +1,7 @@
 //! The course's filter as a student writes it from the notes: angle and axis, sine and cosine, arc cosine, a quaternion
 //! product for each step, and every value in the units of the page.
 
-use crate::filter::{BIAS_DPS, Filter, PERIOD_S};
-use crate::head::Counts;
+use crate::filter::{BIAS_DPS, Counts, Filter, PERIOD_S};
 use nalgebra::{RealField, convert, try_convert};
 
 /// The weight of the gyro, eq. 24: that of a time constant of 7.6 s.

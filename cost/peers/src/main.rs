@@ -16,8 +16,8 @@ use mk20dx_hal as _;
 use nalgebra::Vector3;
 use panic_halt as _;
 use vqf_rs::VQF;
-use vrduino_cost_images::filter::{Filter, PERIOD_S};
-use vrduino_cost_images::head::{Counts, FEW, HEAD_Z_UP};
+use vrduino_cost_images::filter::{Counts, Filter, PERIOD_S};
+use vrduino_cost_images::head::{FEW, HEAD_Z_UP};
 
 const DPS_PER_COUNT: f32 = 2000.0 / 32768.0;
 const G_PER_COUNT: f32 = 2.0 / 32768.0;

@@ -28,7 +28,7 @@ use super::super::i2c::{Error, I2c};
 use super::super::timer::{self, Alarm, TICKS_PER_US};
 use super::frames;
 use super::job::Job;
-use super::sampling::{Counts, Outcome, Sampled};
+use super::sampled::{Counts, Outcome, Sampled};
 
 /// Between the alarms while nothing is sampled.
 const TICK: u32 = 1000 * TICKS_PER_US;

@@ -8,55 +8,23 @@ use core::cell::UnsafeCell;
 
 use heapless::spsc::{Consumer, Queue};
 use mk20dx_hal::pac::Interrupt;
-use vrduino::imu::magnetometer::polling::{Loss, Polling};
-use vrduino::sampling::{Lock, Timing};
-use vrduino::sensor::magnetometer::RawField;
+use vrduino::imu::magnetometer::polling::Polling;
+use vrduino::sampling::Lock;
 
 use super::super::breadcrumb::{self, Stage};
-use super::super::dma::{Bytes, Dma};
-use super::super::i2c::{Error, I2c};
+use super::super::dma::Dma;
+use super::super::i2c::I2c;
 use super::super::timer::Alarm;
 use super::reader::Reader;
+use super::sampled::{Counts, Sampled};
 
 /// Samples that may wait for the main program: it may be this many milliseconds late.
 const WAITING: usize = 16;
 /// More urgent than USB (0x80); only the upper four bits exist.
 const PRIORITY: u8 = 0x40;
 
-/// How a read has ended.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
-    /// With a new sample.
-    New,
-    /// The sensor had nothing new.
-    Nothing,
-    /// There was none.
-    Failed(Error),
-}
-
-/// What a period of the sensor has brought.
-pub struct Sampled {
-    /// Whether there is a burst.
-    pub outcome: Outcome,
-    /// From the IMU.
-    pub bytes: Bytes,
-    /// When that was ready.
-    pub timing: Timing,
-    /// From the magnetometer, mostly nothing; that it is lost is said once.
-    pub field: Option<Result<RawField, Loss>>,
-}
-
 /// Where what has been sampled comes out.
 pub type Samples = Consumer<'static, Sampled>;
-
-/// What the interrupts have counted since the start.
-#[derive(Clone, Copy, Default)]
-pub struct Counts {
-    /// Samples that were never read, or found no room in the queue.
-    pub lost: u32,
-    /// Times that the magnetometer's measurements were overwritten unread.
-    pub skipped_fields: u32,
-}
 
 /// What the interrupts work on.
 struct Shared(UnsafeCell<Option<Reader>>);
