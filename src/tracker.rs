@@ -10,6 +10,7 @@
 //! [`SAMPLE_PERIOD`]: crate::tracker::SAMPLE_PERIOD
 
 mod answers;
+mod bias;
 mod calibration;
 mod compass;
 mod estimators;
@@ -18,7 +19,7 @@ mod stream;
 mod views;
 
 use crate::calibration::record::Record;
-use crate::calibration::{Reading, Rest, Stillness, Verdict};
+use crate::calibration::{Reading, Rest};
 use crate::command::request::{CoreClock, UseCompass};
 use crate::command::{Command, Mode};
 use crate::fixed::fusion::{Field, Force, Nanoseconds};
@@ -29,6 +30,7 @@ use crate::sensor::{Ranges, RawSample, Sample};
 use crate::units::Seconds;
 use crate::wire::frame::{Counts, Frame};
 use crate::wire::{self, Line};
+use bias::Measurement;
 use calibration::Calibration;
 use compass::Compass;
 use estimators::Estimators;
@@ -51,9 +53,6 @@ const PERIOD_EVERY: u32 = 64;
 
 /// Samples per INFO block: one second.
 const INFO_EVERY: u32 = 1000;
-
-/// Samples between reminders that the bias is not known: a minute.
-const REMIND_EVERY: u32 = 60_000;
 
 /// Samples within the range after which one at its end is worth another warning: a second.
 const CLIPPED_AGAIN: u32 = 1000;
@@ -107,13 +106,6 @@ enum Phase {
     Resetting,
     /// The sensor was away: back to level with the next sample, yaw kept.
     Releveling,
-}
-
-/// A measurement of the bias under way.
-#[derive(Clone, Debug)]
-struct Measurement {
-    stillness: Stillness,
-    samples: u32,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -417,69 +409,6 @@ impl<M: Multiply> Tracker<M> {
 
     fn restart_views(&mut self) {
         self.views.restart(self.estimators.orientation());
-    }
-
-    #[inline(never)]
-    fn measure(&mut self, raw: &RawSample, emit: &mut impl FnMut(&Line)) {
-        let Some(measurement) = &mut self.measurement else {
-            return;
-        };
-        if measurement.samples == 0 {
-            emit(&wire::text("Measuring bias"));
-        }
-        measurement.samples += 1;
-        let starting = self.phase == Phase::Starting;
-        match measurement.stillness.push(raw) {
-            Verdict::Still(rest) => {
-                self.measurement = None;
-                self.estimators.set_bias(rest.gyro_bias);
-                self.bias_unknown = false;
-                self.rest = Some(rest);
-                if starting {
-                    self.start(Force::new(rest.force, self.ranges.accel));
-                }
-                emit(&wire::bias_measured(rest.gyro_bias));
-            }
-            Verdict::Collecting | Verdict::Moved => {
-                if measurement.samples >= STILL_DEADLINE {
-                    self.measurement = None;
-                    if starting {
-                        self.start(self.force(raw));
-                        emit(&wire::text(
-                            "warning: not still for 5 s, gyro bias unknown: lay the board down for two seconds",
-                        ));
-                    } else {
-                        emit(&wire::text("warning: moved for 5 s, gyro bias kept"));
-                    }
-                }
-            }
-        }
-    }
-
-    /// A board that was never still streams all the same, and says now and then that it drifts; its
-    /// first rest is told of.
-    #[cold]
-    #[inline(never)]
-    fn tell_of_bias(&mut self, emit: &mut impl FnMut(&Line)) {
-        let unknown = !self.estimators.bias_is_measured();
-        if self.bias_unknown && !unknown {
-            emit(&wire::bias_measured(self.estimators.bias().rate()));
-        }
-        self.bias_unknown = unknown;
-        if unknown && self.every(REMIND_EVERY) {
-            emit(&wire::text(
-                "warning: never still yet, the heading drifts: lay the board down for two seconds",
-            ));
-        }
-    }
-}
-
-impl Measurement {
-    fn new(ranges: Ranges) -> Self {
-        Self {
-            stillness: Stillness::new(ranges),
-            samples: 0,
-        }
     }
 }
 
