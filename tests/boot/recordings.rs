@@ -20,8 +20,8 @@ fn the_stream_agrees_with_the_library_on_the_same_samples_generated() {
     agrees_with_library(&mut run);
 }
 
-/// Most that the board and the library may differ, in degrees. Both run the same single-precision code,
-/// one compiled for the host and one for a processor without floating point.
+/// Most that the board and the library may differ, in degrees. Both run the same integers, but the board
+/// by the sensor's period as it has measured it, and the library here by the nominal one.
 const DIFFERENCE: f64 = 0.1;
 
 /// Runs the library on the bursts the firmware has read and compares line by line, at six decimals.
