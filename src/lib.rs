@@ -81,7 +81,8 @@ pub mod calibration;
 /// The estimators of the course notes, one per file.
 pub mod orientation;
 
-/// The notes' filter in integers, for a core without a floating-point unit.
+/// The notes' filter and the default estimator in integers, for a core without a floating-point unit: what the
+/// tracker runs.
 pub mod fixed;
 
 /// The default estimator: tilt, bias and heading, level with the best published filter.

@@ -1,6 +1,6 @@
 //! [`Tracker::update`] is called once per [`SAMPLE_PERIOD`] with what the sensor sent, and does
-//! everything that follows: units, bias, filter, and every tenth time a line. The firmware and
-//! the tests run this same code.
+//! everything that follows: corrections, bias, filter ([`fixed`](crate::fixed)), and every tenth time a
+//! line. The firmware and the tests run this same code.
 //!
 //! The sensor is the time base, and its clock a per cent or so off: [`Tracker::timed`] says by how much. A sample that
 //! could not be read is bridged by the one before (the rate is held for the sample that is not there) and counted.
