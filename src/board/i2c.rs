@@ -206,6 +206,12 @@ impl I2c {
         self.put(address);
     }
 
+    /// Whether anyone has the bus: from START to STOP, or as long as a line is held low.
+    #[inline(always)]
+    pub(super) fn is_busy(&self) -> bool {
+        self.status() & BUSY != 0
+    }
+
     /// Repeated START and address.
     #[inline(always)]
     pub(super) fn begin_again(&mut self, address: u8, interrupt: bool) {
@@ -303,7 +309,7 @@ impl I2c {
 
     fn wait_until_free(&mut self) -> Result<(), Error> {
         let deadline = Deadline::in_us(BUSY_US);
-        while self.status() & BUSY != 0 {
+        while self.is_busy() {
             if deadline.passed() {
                 return Err(Error::Timeout);
             }

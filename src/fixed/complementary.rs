@@ -179,7 +179,11 @@ impl<M: Multiply> Complementary<M> {
     #[cold]
     #[inline(never)]
     fn level_anywhere(&mut self, x: Q<M, 11>, y: Q<M, 11>, z: Q<M, 11>) {
-        self.orientation = levelled(self.orientation, Vector::new(x, y, z), self.derived.share);
+        self.orientation = levelled(
+            self.orientation,
+            Vector::new(x, y, z).read_as(),
+            self.derived.share,
+        );
     }
 
     /// To unit length, also after a turn by many degrees.
@@ -238,6 +242,6 @@ impl<M: Multiply> Complementary<M> {
     pub fn level(&mut self, force: Force) {
         let one = const { Q::constant(1.0) };
         let force = self.orientation.in_world_times_square(force.vector(), one);
-        self.orientation = levelled(self.orientation, force, Share::WHOLE);
+        self.orientation = levelled(self.orientation, force.read_as(), Share::WHOLE);
     }
 }

@@ -108,7 +108,7 @@ pub struct Tilt<M> {
 /// Any tilt; none if the force is zero, which has no direction. One that points straight down
 /// is turned up about x, as the notes leave open.
 #[inline]
-pub fn anywhere<M: Multiply, const BITS: u32>(force: Vector<M, BITS>) -> Option<Tilt<M>> {
+pub fn anywhere<M: Multiply>(force: Vector<M, 12>) -> Option<Tilt<M>> {
     let Vector { x, y: up, z } = force;
     let largest = x.bits().unsigned_abs() | up.bits().unsigned_abs() | z.bits().unsigned_abs();
     if largest == 0 {
@@ -116,7 +116,7 @@ pub fn anywhere<M: Multiply, const BITS: u32>(force: Vector<M, BITS>) -> Option<
     }
     // The largest becomes ½ to 1.
     let shift = largest.leading_zeros().saturating_sub(2);
-    let scaled = |q: Q<M, BITS>| Q::<M, 30>::from_bits(q.bits() << shift);
+    let scaled = |q: Q<M, 12>| Q::<M, 30>::from_bits(q.bits() << shift);
     let (x, up, z) = (scaled(x), scaled(up), scaled(z));
     let Some((x, z, horizontal)) = horizontal(x, z) else {
         let straight_down = Tilt {
@@ -161,11 +161,12 @@ impl<M: Multiply> Tilt<M> {
     }
 }
 
-/// The orientation levelled by a share of any tilt, which the force in the world shows, and normalised.
+/// The orientation levelled by a share of any tilt, which the force in the world shows, and normalised. Only the
+/// force's direction matters: one of another format may be read as this.
 #[inline]
-pub fn levelled<M: Multiply, const BITS: u32>(
+pub fn levelled<M: Multiply>(
     q: Quaternion<M>,
-    force: Vector<M, BITS>,
+    force: Vector<M, 12>,
     share: Share,
 ) -> Quaternion<M> {
     let levelled = match (anywhere(force), share) {

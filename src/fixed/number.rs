@@ -61,9 +61,7 @@ impl<M: Multiply, const BITS: u32> Q<M, BITS> {
     /// The nearest to `value`; the end of the range for what is outside, zero for what is not a number.
     /// For what follows from parameters: it computes in floating point.
     pub fn nearest(value: f32) -> Self {
-        // A cast cuts off towards zero, saturates, and makes zero of what is not a number.
-        let away = if value < 0.0 { -0.5 } else { 0.5 };
-        Self::from_bits((value * (1_u64 << BITS) as f32 + away) as i32)
+        Self::from_bits(nearest(value * (1_u64 << BITS) as f32))
     }
 
     /// In floating point.
@@ -224,4 +222,12 @@ impl<M: Multiply, const BITS: u32> Wide<M, BITS> {
         const { assert!(A + B == BITS, "a whole product has the bits of both") }
         Self::from_bits(M::add_wide(self.bits, a.bits, b.bits))
     }
+}
+
+/// To the nearest whole number, halves away from zero. Once in an image, and not once for each format.
+#[inline(never)]
+fn nearest(value: f32) -> i32 {
+    // A cast cuts off towards zero, saturates, and makes zero of what is not a number.
+    let away = if value < 0.0 { -0.5 } else { 0.5 };
+    (value + away) as i32
 }

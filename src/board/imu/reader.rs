@@ -149,7 +149,8 @@ impl Reader {
         self.alarm.set(TICK);
         clock::advance();
         let Some(bus) = &mut self.bus else { return };
-        if self.step == Step::Idle {
+        // A line may be held low between two reads as well.
+        if self.step == Step::Idle && !bus.is_busy() {
             self.stuck_alarms = 0;
             self.job = Job::Sample;
             self.step = Step::AddressToWrite;
@@ -160,7 +161,7 @@ impl Reader {
         self.overrun();
     }
 
-    /// The read before has not ended.
+    /// The read before has not ended, or the bus is not free.
     #[cold]
     fn overrun(&mut self) {
         self.stuck_alarms += 1;

@@ -46,6 +46,7 @@ pub fn seconds(period: Nanoseconds) -> Seconds<f32> {
 
 /// Whole samples in a time, at least one. In whole nanoseconds: where a time is so many samples and a
 /// half, single precision would round it either way.
+#[inline(never)]
 pub fn samples(time: Seconds<f32>, period: Nanoseconds) -> u32 {
     // A cast saturates, and makes zero of what is not a number.
     let twice = ((time.0 * 1e9) as u64).saturating_mul(2);
