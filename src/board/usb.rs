@@ -146,6 +146,8 @@ impl Usb {
                 return Some(command);
             }
         }
+        // There is room again for what waits in the controller.
+        NVIC::pend(Interrupt::USB0);
         None
     }
 
@@ -220,12 +222,15 @@ impl Port {
         }
     }
 
-    /// What the host sends is always taken: a full receive buffer must not stop it from reading.
+    /// What the host sends waits in the controller until there is room for all of it: nothing typed is lost, and the
+    /// main program makes room once a millisecond.
     fn take_keys(&mut self) {
         let mut packet = [0; 64];
-        while let Ok(count) = self.class.read_packet(&mut packet) {
+        while self.keys.capacity() - self.keys.len() >= packet.len() {
+            let Ok(count) = self.class.read_packet(&mut packet) else {
+                return;
+            };
             for &key in packet.iter().take(count) {
-                // Sixty-four keys in a millisecond are no person's; the excess is dropped.
                 let _ = self.keys.enqueue(key);
             }
         }

@@ -70,14 +70,14 @@ pub struct Accelerometer<M = Portable> {
 }
 
 impl<M: Multiply> Accelerometer<M> {
-    /// For a sensor at this range. None if it changes what is measured by more than a quarter, or by more than a
-    /// quarter of the range: no sensor is so far off.
+    /// For a sensor at this range. None if a row of A − 1 comes to more than 0.46, or b to more than a quarter of the
+    /// range: no sensor is so far off, and no [record](crate::calibration::record) holds more.
     pub fn new(calibration: &Calibration<SpecificForce<f32>>, range: AccelRange) -> Option<Self> {
         let counts_per_g = f32::from(range.counts_per_g());
         let difference = calibration.matrix() - Matrix3::identity();
         let offset = calibration.offset().g() * counts_per_g;
         let is_near = offset.iter().all(|part| part.abs() <= 8_192.0);
-        let difference = Affine::new(&difference, offset, 0.25)?;
+        let difference = Affine::new(&difference, offset, 0.46)?;
         is_near.then_some(Self { difference })
     }
 

@@ -143,7 +143,7 @@ impl<M: Multiply> Fusion<M> {
     fn update_with(&mut self, gyro: [i16; 3], force: impl Fn() -> Force, field: Option<Field>) {
         self.rest.add_rate(gyro);
         self.rate = Vector::from_counts(gyro) - self.bias.counts();
-        if self.inclination.is_settled() {
+        if self.inclination.is_plain() {
             let turned = self.inclination.turned(self.rate);
             let force = force().vector();
             self.rest.add_force(force);
@@ -166,7 +166,7 @@ impl<M: Multiply> Fusion<M> {
         }
     }
 
-    /// A sample of the first second, the rate of which is there already.
+    /// A sample of the first second, or one whose correction may be large; its rate is there already.
     #[inline(never)]
     fn start(&mut self, force: impl Fn() -> Force) {
         let force = force().vector();
@@ -176,7 +176,12 @@ impl<M: Multiply> Fusion<M> {
         }
         self.rest.add_force(force);
         let turned = self.inclination.turned(self.rate);
-        self.inclination.correct_at_the_start(turned, force);
+        if self.inclination.is_settled() {
+            self.inclination.correct(turned, force);
+            self.inclination.normalise();
+        } else {
+            self.inclination.correct_at_the_start(turned, force);
+        }
     }
 
     /// One field.

@@ -249,10 +249,12 @@ impl DataReady {
         self.since = 0;
     }
 
-    /// Seeks data-ready anew, after reads at moments of somebody else's choice.
+    /// Seeks data-ready anew, after reads at moments of somebody else's choice. The period is known from before.
     pub fn resume(&mut self) {
+        let period = self.period;
         self.expected = self.stamped;
         self.seek();
+        self.period = period;
     }
 
     /// Whether the sensor's clock is known.

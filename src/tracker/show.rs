@@ -72,6 +72,7 @@ impl<M: Multiply> Tracker<M> {
             compass: self.compass_use(),
             notes,
             bias_measured: estimators.bias_is_measured(),
+            skipped: self.timing.is_some_and(|timing| timing.lost > 0),
         }
     }
 

@@ -35,6 +35,8 @@ pub struct Status {
     pub notes: bool,
     /// The gyro's bias has been measured at rest since the start.
     pub bias_measured: bool,
+    /// Samples between the one before and this one were left out or lost.
+    pub skipped: bool,
 }
 
 /// What the magnetometer does for the heading.
@@ -58,9 +60,10 @@ const STILL: u8 = 1 << 2;
 const COMPASS: u32 = 3;
 const NOTES: u8 = 1 << 5;
 const BIAS_MEASURED: u8 = 1 << 6;
+const SKIPPED: u8 = 1 << 7;
 
 impl Status {
-    /// As a byte of a frame; bit 7 is 0.
+    /// As a byte of a frame.
     pub fn to_byte(self) -> u8 {
         let flag = |set: bool, bit: u8| if set { bit } else { 0 };
         let compass = match self.compass {
@@ -75,9 +78,10 @@ impl Status {
             | compass << COMPASS
             | flag(self.notes, NOTES)
             | flag(self.bias_measured, BIAS_MEASURED)
+            | flag(self.skipped, SKIPPED)
     }
 
-    /// From a byte of a frame. Bit 7 is passed over: it may mean something one day.
+    /// From a byte of a frame.
     pub fn from_byte(byte: u8) -> Self {
         let flag = |bit: u8| byte & bit != 0;
         Self {
@@ -92,6 +96,7 @@ impl Status {
             },
             notes: flag(NOTES),
             bias_measured: flag(BIAS_MEASURED),
+            skipped: flag(SKIPPED),
         }
     }
 }

@@ -136,6 +136,12 @@ impl Reader {
         }
     }
 
+    /// Once the sensor's period is known: what is left out is reckoned by it.
+    #[inline(always)]
+    fn follows_host(&self) -> bool {
+        self.lock == Lock::Usb && self.ready.is_locked()
+    }
+
     /// Gives the bus back. Not to be interrupted.
     pub fn take(&mut self) -> Option<I2c> {
         self.step = Step::Idle;
@@ -246,10 +252,10 @@ impl Reader {
             bus.refuse_last();
             self.step = Step::Unwanted;
         }
-        match self.lock {
-            Lock::Usb => self.timing = self.ready.read_at(asked, new),
-            Lock::Sensor if new => self.timing = self.ready.new_sample(asked),
-            Lock::Sensor => {}
+        if self.follows_host() {
+            self.timing = self.ready.read_at(asked, new);
+        } else if new {
+            self.timing = self.ready.new_sample(asked);
         }
     }
 
@@ -257,9 +263,10 @@ impl Reader {
     #[cold]
     fn ask_again(&mut self) {
         let Some(bus) = &mut self.bus else { return };
-        let next = match self.lock {
-            Lock::Sensor => self.ready.not_yet(self.begun.wrapping_add(self.lead)),
-            Lock::Usb => Early::Repeat(self.timing),
+        let next = if self.follows_host() {
+            Early::Repeat(self.timing)
+        } else {
+            self.ready.not_yet(self.begun.wrapping_add(self.lead))
         };
         match next {
             Early::Again => {
@@ -368,7 +375,7 @@ impl Reader {
     #[inline(always)]
     fn until_next(&self) -> u32 {
         let now = timer::now();
-        if self.lock == Lock::Usb
+        if self.follows_host()
             && let Some(wait) = frames::until_ahead(now, PAUSE)
         {
             return wait;

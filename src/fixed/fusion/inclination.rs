@@ -38,6 +38,8 @@ struct Coefficients<M> {
     /// From there to Q30, in g.
     shift_to_g: u32,
     start: u32,
+    /// Age from which a sample needs nothing but [`Inclination::correct`]; never where a correction may be large.
+    plain_from: u32,
 }
 
 /// A number as Q54 after a shift to the left.
@@ -71,6 +73,10 @@ impl<M: Multiply> Scaled<M> {
 /// such leave a quaternion that its format holds.
 const LARGEST_CORRECTION: f32 = 0.2;
 
+/// Where a correction may be larger than this, in a sample of a force at the end of its range on each axis, the length
+/// is made good after each: a half angle, rad.
+const SMALL_CORRECTION: f32 = 1.0 / 64.0;
+
 /// Samples of the start whose corrections may be so large that each is followed by a root.
 const LARGE: u32 = 64;
 
@@ -81,14 +87,18 @@ impl<M: Multiply> Coefficients<M> {
         // 2¹¹ to 2¹⁴.
         let bits_per_g = (rates.counts_per_g() as u32).ilog2();
         // √3 · 2¹⁵ counts.
-        let most = LARGEST_CORRECTION / 56_756.0;
+        const MOST_COUNTS: f32 = 56_756.0;
+        let most = LARGEST_CORRECTION / MOST_COUNTS;
+        let start = samples(parameters.start_time, rates.sample);
+        let is_small = per_count * MOST_COUNTS <= SMALL_CORRECTION;
         Self {
             half_angle_per_count: half_angle_per_count(rates.ranges.gyro, rates.sample),
             low_pass: weight(tilt_low_pass_weight(parameters, period)),
             correction: Scaled::new(per_count.min(most)),
             one_g: Q::from_bits(1 << (bits_per_g + 10)),
             shift_to_g: 20 - bits_per_g,
-            start: samples(parameters.start_time, rates.sample),
+            start,
+            plain_from: if is_small { start } else { u32::MAX },
         }
     }
 }
@@ -165,8 +175,8 @@ impl<M: Multiply> Inclination<M> {
         }
     }
 
-    /// To unit length: once in a block, for what a correction adds to the length is the square of it, less than
-    /// a millionth.
+    /// To unit length: once in a block, for what a small correction adds to the length is the square of it; with
+    /// every sample where it may be large.
     #[inline(always)]
     pub fn normalise(&mut self) {
         match self.orientation.normalised_nearby() {
@@ -202,6 +212,12 @@ impl<M: Multiply> Inclination<M> {
     #[inline(always)]
     pub fn error(&self) -> [Q<M, 10>; 2] {
         self.error.map(Wide::upper)
+    }
+
+    /// Whether [`Self::correct`] is all that a sample needs.
+    #[inline(always)]
+    pub fn is_plain(&self) -> bool {
+        self.age >= self.coefficients.plain_from
     }
 
     /// Whether the start is over, so that an error is the gyro's and not the start's.
