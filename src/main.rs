@@ -70,15 +70,11 @@ fn turn(board: &mut Board, tracker: &mut Tracker<Instructions>) -> Result<(), Fa
     Ok(())
 }
 
-/// This command and whatever else the host has typed.
+/// One in a turn: so its answer has gone before the next is made.
 #[cold]
 #[inline(never)]
-fn obey(board: &mut Board, tracker: &mut Tracker<Instructions>, first: Command) {
-    let mut next = Some(first);
-    while let Some(command) = next {
-        tracker.command(command, &mut |line| board.usb.send(line));
-        next = board.usb.command();
-    }
+fn obey(board: &mut Board, tracker: &mut Tracker<Instructions>, command: Command) {
+    tracker.command(command, &mut |line| board.usb.send(line));
     board.lock_on(tracker.lock());
     board.run_at(tracker.core());
     if let Some(record) = tracker.take_calibration_to_keep() {

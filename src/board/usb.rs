@@ -141,14 +141,17 @@ impl Usb {
 
     #[inline(never)]
     fn read_keys(&mut self) -> Option<Command> {
-        while let Some(key) = self.keys.dequeue() {
-            if let Some(command) = self.parser.push(key) {
-                return Some(command);
-            }
+        let mut command = None;
+        while command.is_none()
+            && let Some(key) = self.keys.dequeue()
+        {
+            command = self.parser.push(key);
         }
-        // There is room again for what waits in the controller.
-        NVIC::pend(Interrupt::USB0);
-        None
+        if !self.keys.ready() {
+            // There is room again for what waits in the controller.
+            NVIC::pend(Interrupt::USB0);
+        }
+        command
     }
 
     /// Whether the host has opened the port since this was last asked.

@@ -231,3 +231,17 @@ fn a_terminal_that_echoes_the_stream_presses_no_keys() {
     assert!(run.orientations.len() > 100);
     assert_eq!(run.text.matches("Measuring bias").count(), 1);
 }
+
+#[test]
+fn whatever_is_typed_at_once_is_all_answered() {
+    let mut run = Run::still();
+    run.seconds(1.5);
+    let lines: String = (0..40).map(|i| format!(":every {}\n", 10 + i)).collect();
+    run.board.chip().host.send(lines.as_bytes());
+    run.seconds(1.0);
+    for i in 0..40 {
+        let answer = format!("OK stream text every {}\n", 10 + i);
+        assert!(run.text.contains(&answer), "no {answer:?}");
+    }
+    assert!(!run.text.contains("ERR"));
+}

@@ -239,6 +239,7 @@ impl Reader {
     /// Is there a new sample?
     #[inline(never)]
     fn status(&mut self) {
+        let follows_host = self.follows_host();
         let Some(bus) = &mut self.bus else { return };
         let status = bus.get();
         let asked = self.begun.wrapping_add(self.lead);
@@ -252,7 +253,7 @@ impl Reader {
             bus.refuse_last();
             self.step = Step::Unwanted;
         }
-        if self.follows_host() {
+        if follows_host {
             self.timing = self.ready.read_at(asked, new);
         } else if new {
             self.timing = self.ready.new_sample(asked);
@@ -262,8 +263,9 @@ impl Reader {
     /// There was none.
     #[cold]
     fn ask_again(&mut self) {
+        let follows_host = self.follows_host();
         let Some(bus) = &mut self.bus else { return };
-        let next = if self.follows_host() {
+        let next = if follows_host {
             Early::Repeat(self.timing)
         } else {
             self.ready.not_yet(self.begun.wrapping_add(self.lead))
