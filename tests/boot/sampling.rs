@@ -3,7 +3,7 @@
 use vrduino_emulator::board::Setup;
 use vrduino_emulator::cpu::Pace;
 use vrduino_emulator::motion::turns::Turns;
-use vrduino_emulator::mpu9250::Part;
+use vrduino_emulator::mpu9250::{Burst, Part};
 use vrduino_emulator::time::{self, MICROSECOND, MILLISECOND, SECOND};
 
 use crate::run::Run;
@@ -21,20 +21,20 @@ fn off(error: f64) -> Part {
     Part::perfect().clock_error(error)
 }
 
+/// What is read in so many seconds.
+fn bursts(run: &mut Run, seconds: f64) -> Vec<Burst> {
+    run.board.chip().sensor.recording = Some(Vec::new());
+    run.seconds(seconds);
+    let recording = run.board.chip().sensor.recording.take();
+    recording.expect("it records")
+}
+
 #[test]
 fn once_locked_each_sample_is_read_once_whatever_the_sensors_clock() {
     for error in [-0.01, 0.01] {
         let mut run = with(off(error), Pace::Greatest);
         run.seconds(LOCKED);
-        run.board.chip().sensor.recording = Some(Vec::new());
-        run.seconds(4.0);
-        let bursts = run
-            .board
-            .chip()
-            .sensor
-            .recording
-            .take()
-            .expect("it records");
+        let bursts = bursts(&mut run, 4.0);
         let period = SECOND as f64 / 1000.0 / (1.0 + error);
         for pair in bursts.windows(2) {
             assert_eq!(pair[1].bytes[0] & 1, 1, "a sample came twice");
@@ -84,15 +84,7 @@ fn a_sample_is_on_its_way_within_half_a_millisecond() {
     // What the filter takes is not counted here: it has its own budget.
     let mut run = with(off(0.006), Pace::Greatest);
     run.seconds(LOCKED);
-    run.board.chip().sensor.recording = Some(Vec::new());
-    run.seconds(3.0);
-    let bursts = run
-        .board
-        .chip()
-        .sensor
-        .recording
-        .take()
-        .expect("it records");
+    let bursts = bursts(&mut run, 3.0);
     let mut delays: Vec<u64> = bursts.iter().map(|burst| burst.at - burst.ready).collect();
     delays.sort_unstable();
     let (median, worst) = (delays[delays.len() / 2], delays[delays.len() - 1]);
@@ -127,15 +119,7 @@ fn locked_on_the_hosts_frames_a_sample_comes_in_each_and_the_odd_ones_are_counte
     run.board.chip().host.send(b":lock usb\n0");
     run.wait_for("OK lock usb", 0.1);
     run.seconds(0.5);
-    run.board.chip().sensor.recording = Some(Vec::new());
-    run.seconds(2.0);
-    let bursts = run
-        .board
-        .chip()
-        .sensor
-        .recording
-        .take()
-        .expect("it records");
+    let bursts = bursts(&mut run, 2.0);
     assert!(bursts.len().abs_diff(2000) <= 1, "{}", bursts.len());
     for pair in bursts.windows(2) {
         let off = (pair[1].at - pair[0].at).abs_diff(MILLISECOND);

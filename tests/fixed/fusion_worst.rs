@@ -2,32 +2,12 @@
 
 use crate::fusion::{rates, unit};
 use crate::random::{ODD, Random};
+use crate::worst::{ENDS, sample};
 use vrduino::fixed::fusion::{Field, Force, Fusion, Nanoseconds, Parameters, Rates};
 use vrduino::imu::RANGES;
 use vrduino::nalgebra::Vector3;
-use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample};
+use vrduino::sensor::{AccelRange, GyroRange, Ranges};
 use vrduino::units::Seconds;
-
-const ENDS: [i16; 9] = [
-    i16::MIN,
-    i16::MIN + 1,
-    -16384,
-    -1,
-    0,
-    1,
-    16384,
-    i16::MAX - 1,
-    i16::MAX,
-];
-
-fn sample(gyro: [i16; 3], accel: [i16; 3]) -> RawSample {
-    RawSample {
-        gyro,
-        accel,
-        temperature: 0,
-        fresh: true,
-    }
-}
 
 fn assert_unit(bits: [i32; 4], allowed: f64, what: impl core::fmt::Debug) {
     let squares: f64 = bits

@@ -9,7 +9,7 @@ use vrduino::orientation::TimeConstant;
 use vrduino::sensor::{AccelRange, GyroRange, Ranges, RawSample};
 use vrduino::units::{AngularRate, Seconds};
 
-fn sample(gyro: [i16; 3], accel: [i16; 3]) -> RawSample {
+pub fn sample(gyro: [i16; 3], accel: [i16; 3]) -> RawSample {
     RawSample {
         gyro,
         accel,
@@ -35,7 +35,7 @@ fn assert_unit(filter: &Complementary, what: impl core::fmt::Debug) {
     assert!((squares.sqrt() - 1.0).abs() < 1e-8, "{squares} {what:?}");
 }
 
-const ENDS: [i16; 9] = [
+pub const ENDS: [i16; 9] = [
     i16::MIN,
     i16::MIN + 1,
     -16384,

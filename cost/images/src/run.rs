@@ -62,7 +62,6 @@ pub fn run<F: Filter>(input: &[Counts], update: fn(&mut F, &Counts)) -> ! {
 macro_rules! filters {
     ($($(#[$attribute:meta])* $name:ident: $filter:ty, on $samples:ident of $input:ident;)*) => {
         $(
-            #[allow(unused_imports, reason = "the types are named from outside")]
             mod $name {
                 use super::*;
 
