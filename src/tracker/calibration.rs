@@ -9,7 +9,7 @@ use crate::fixed::affine::{Accelerometer, Magnetometer};
 use crate::fixed::fusion::{Field, Force};
 use crate::fixed::multiply::Multiply;
 use crate::sensor::magnetometer::{RawField, Resolution, SensitivityAdjustment};
-use crate::sensor::{Ranges, RawSample, Sample};
+use crate::sensor::{Ranges, Sample};
 use crate::wire::{self, Line};
 
 /// The record in use, and the one that is coming in.
@@ -18,7 +18,7 @@ pub struct Calibration<M> {
     ranges: Ranges,
     record: Record,
     correction: Correction<f32>,
-    /// The same for counts; none where nothing is known, or where it is more than that holds.
+    /// The same for counts, which hold whatever a record may; none where nothing is known.
     accelerometer: Option<Accelerometer<M>>,
     /// None while there is no magnetometer.
     adjustment: Option<SensitivityAdjustment>,
@@ -84,25 +84,10 @@ impl<M: Multiply> Calibration<M> {
     /// The force corrected, in counts.
     #[inline(always)]
     pub fn force(&self, counts: [i16; 3]) -> Force {
-        if self.record.accelerometer.is_none() {
-            return Force::from_counts(counts);
+        match &self.accelerometer {
+            Some(accelerometer) => corrected(accelerometer, counts),
+            None => Force::from_counts(counts),
         }
-        self.corrected(counts)
-    }
-
-    #[inline(never)]
-    fn corrected(&self, counts: [i16; 3]) -> Force {
-        if let Some(accelerometer) = &self.accelerometer {
-            return accelerometer.force(counts);
-        }
-        let raw = RawSample {
-            accel: counts,
-            ..RawSample::default()
-        };
-        Force::new(
-            self.sample(self.ranges.sample(&raw)).force,
-            self.ranges.accel,
-        )
     }
 
     /// The field without the board's iron, body frame; none without a magnetometer.
@@ -186,4 +171,10 @@ impl<M: Multiply> Calibration<M> {
             )),
         }
     }
+}
+
+/// Once in an image, for whoever asks for a force.
+#[inline(never)] // in SRAM, see memory.x
+fn corrected<M: Multiply>(accelerometer: &Accelerometer<M>, counts: [i16; 3]) -> Force {
+    accelerometer.force(counts)
 }
