@@ -19,6 +19,9 @@ pub mod hub;
 
 pub mod interrupt;
 
+#[cfg(feature = "tui")]
+pub mod tui;
+
 pub mod cli;
 
 pub mod commands;

@@ -6,7 +6,8 @@ use vrduino::wire::provenance::Compass;
 /// The latest sample's status, and how often since it was last looked at what lasts for a sample only.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Condition {
-    latest: Option<Status>,
+    /// None before the first sample.
+    latest: Option<Option<Status>>,
     clipped: u64,
     repeated: u64,
     skipped: u64,
@@ -15,7 +16,7 @@ pub struct Condition {
 impl Condition {
     /// Takes the status of a sample; the course's lines have none.
     pub fn take(&mut self, status: Option<Status>) {
-        self.latest = status;
+        self.latest = Some(status);
         if let Some(status) = status {
             self.clipped += u64::from(status.clipped);
             self.repeated += u64::from(status.repeated);
@@ -25,7 +26,7 @@ impl Condition {
 
     /// The latest.
     pub fn latest(&self) -> Option<Status> {
-        self.latest
+        self.latest.flatten()
     }
 
     /// Samples at the end of the sensor's range.
@@ -43,6 +44,16 @@ impl Condition {
         self.skipped
     }
 
+    /// This, and what was counted before it.
+    pub fn with(&self, earlier: &Self) -> Self {
+        Self {
+            latest: self.latest.or(earlier.latest),
+            clipped: self.clipped + earlier.clipped,
+            repeated: self.repeated + earlier.repeated,
+            skipped: self.skipped + earlier.skipped,
+        }
+    }
+
     /// The counts begin anew.
     pub fn forget(&mut self) {
         *self = Self {
@@ -53,8 +64,10 @@ impl Condition {
 
     /// In words, a fact each, what wants attention first.
     pub fn words(&self) -> Vec<&'static str> {
-        let Some(status) = self.latest else {
-            return vec!["no status in this stream"];
+        let status = match self.latest {
+            None => return vec!["no orientation yet"],
+            Some(None) => return vec!["no status in this stream"],
+            Some(Some(status)) => status,
         };
         let mut words = Vec::new();
         if self.clipped > 0 {
@@ -94,6 +107,8 @@ mod tests {
     #[test]
     fn what_lasts_for_a_sample_is_told_until_it_was_looked_at() {
         let mut condition = Condition::default();
+        assert_eq!(condition.words(), ["no orientation yet"]);
+        condition.take(None);
         assert_eq!(condition.words(), ["no status in this stream"]);
         let clipped = Status {
             clipped: true,

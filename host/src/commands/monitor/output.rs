@@ -50,10 +50,10 @@ impl Output {
 
     /// It is not: why, and what to do.
     pub fn trouble(&self, state: State, sentence: &str) -> Result<(), Closed> {
-        let word = if state == State::Lost {
-            "lost"
-        } else {
-            "waiting"
+        let word = match state {
+            State::Lost => "lost",
+            State::Connected => "note",
+            State::Waiting | State::Ended => "waiting",
         };
         self.say(
             || format!("{word}: {sentence}"),
