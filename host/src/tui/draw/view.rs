@@ -32,7 +32,7 @@ pub fn draw(frame: &mut Frame, model: &Model, area: Rect) {
             paint(frame, inner, &picture);
         }
     } else {
-        let block = panel("board").title(Line::from(" from the front ").right_aligned());
+        let block = panel("board").title(Line::from(" seen by the wearer ").right_aligned());
         let inner = block.inner(area);
         frame.render_widget(block, area);
         let picture = board::picture(model.orientation(), aspect(inner));

@@ -8,8 +8,11 @@ use super::{Camera, Ink, Picture};
 /// Half of width, height and thickness (mm).
 const HALF: [f64; 3] = [50.0, 32.0, 3.0];
 
-/// Where the viewer stands (mm): a little to the right of the board and above it.
-pub const EYE: [f64; 3] = [170.0, 190.0, 420.0];
+/// Where the viewer stands (mm): a little to the left of the board and above it.
+pub const EYE: [f64; 3] = [-160.0, 180.0, 420.0];
+
+/// So many mm to either side of the board's middle, and above and below it, are in the picture.
+pub const WITHIN: [f64; 2] = [92.0, 86.0];
 
 /// Ends of the axes (mm), in the frame of the board.
 pub const AXES: [(Ink, [f64; 3], &str); 3] = [
@@ -23,12 +26,9 @@ const GROUND: (f64, f64) = (62.0, -58.0);
 
 /// The camera, for a picture of this width over its height.
 pub fn camera(aspect: f64) -> Option<Camera> {
-    /// So many mm to either side of the board's middle are in the picture.
-    const ACROSS: f64 = 92.0;
-    /// And so many above and below.
-    const UP: f64 = 86.0;
+    let [across, up] = WITHIN;
     let eye = Point3::from(EYE);
-    let half = (UP.max(ACROSS / aspect) / eye.coords.norm()).atan();
+    let half = (up.max(across / aspect) / eye.coords.norm()).atan();
     let view = look_at(eye, Point3::origin(), Vector3::y()).ok()?;
     Camera::new(view, 2.0 * half.to_degrees(), aspect).ok()
 }
