@@ -124,13 +124,13 @@ mod tests {
     fn a_strip_holds_its_span_and_breaks_where_the_clock_does() {
         let mut strips = Strips::default();
         for i in 0..20_000 {
-            strips.take(&sample(f64::from(i) * 1e-3, 30.0, i == 0));
+            strips.take(&sample(f64::from(i) * 1e-3, 27.0, i == 0));
         }
         let span = strips.now() - strips.points().next().expect("there are some").time;
         assert!((SPAN - 0.1..=SPAN).contains(&span), "{span}");
         assert!(strips.points().count() <= 501);
-        assert!((strips.points().last().expect("some").angles[0] - 30.0).abs() < 1e-9);
-        assert_eq!(strips.range(0), [20.0, 40.0]);
+        assert!((strips.points().last().expect("some").angles[0] - 27.0).abs() < 1e-9);
+        assert_eq!(strips.range(0), [10.0, 40.0]);
         let before = strips.now();
         strips.take(&sample(0.0, 0.0, true));
         assert!(strips.now() > before);
