@@ -5,7 +5,7 @@ import { Shapes } from "./shapes.js";
 
 /** Red, green, blue for x, y, z, here as in the charts. */
 export const AXES = { x: "#ff5d6e", y: "#3ddc84", z: "#4f9dff" };
-export const AXIS_LENGTH = 62;
+export const AXIS_LENGTH = 70;
 
 const BOARD = { width: 100, height: 62, depth: 1.6 };
 const TEENSY = { width: 35.6, height: 17.8, depth: 1.6, x: -8, y: 0, z: 5.4 };
@@ -21,9 +21,9 @@ const BLACK = "#17181c";
 const SCALE = 12;
 const SHEET = { width: 1216, height: 1024 };
 const PRINTS = {
-  board: { x: 8, y: 8, ...BOARD },
-  teensy: { x: 8, y: 768, ...TEENSY },
-  sensor: { x: 480, y: 768, ...SENSOR },
+  board: { ...BOARD, x: 8, y: 8 },
+  teensy: { ...TEENSY, x: 8, y: 776 },
+  sensor: { ...SENSOR, x: 480, y: 776 },
 };
 
 /** From a place on a face, 0 to 1 from its upper left corner, to one on the canvas. */
@@ -95,8 +95,8 @@ export function axes() {
   for (const axis of ["x", "y", "z"]) {
     const from = (distance) => ["x", "y", "z"].map((name) => (name === axis ? distance : 0));
     shapes.paint(AXES[axis], 0.4);
-    shapes.put(...from(0), axis).rod(0.9, AXIS_LENGTH - 8, 16);
-    shapes.put(...from(AXIS_LENGTH - 8), axis).rod(2.6, 8, 24, 0);
+    shapes.put(...from(0), axis).rod(1.1, AXIS_LENGTH - 9, 16);
+    shapes.put(...from(AXIS_LENGTH - 9), axis).rod(3.2, 9, 24, 0);
   }
   return shapes;
 }

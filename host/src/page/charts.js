@@ -2,10 +2,10 @@
 
 import { COLUMN, COLUMNS } from "./history.js";
 
-const NICE = [1, 2, 5];
+const NICE = [1, 1.2, 1.6, 2, 3, 4, 6, 8];
 const MARGIN = { left: 34, right: 6, top: 6, bottom: 6 };
 
-/** The nice number at or above a value: 1, 2 or 5 times a power of ten. */
+/** The nice number at or above a value, whose half is nice too. */
 function nice(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   return (NICE.find((step) => step * power >= value) ?? 10) * power;
@@ -66,7 +66,7 @@ export class Chart {
       for (const step of [15, 30, 45, 90]) if (largest <= step) return step;
       return this.most;
     }
-    return Math.min(this.most, nice(Math.max(largest, this.least)));
+    return Math.min(this.most, nice(Math.max(1.05 * largest, this.least)));
   }
 
   drawGrid(top) {

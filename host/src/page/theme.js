@@ -7,18 +7,18 @@ export const LIGHTS = {
   dark: {
     bench: {
       sunlight: [1.35, 1.25, 1.1], skylight: [0.5, 0.58, 0.75], groundlight: [0.12, 0.13, 0.18],
-      haze: [0, 0, 0], hazy: 0, line: [0.36, 0.43, 0.6], ground: [0, 0, 0], shade: [0, 0, 0, 0.45],
+      haze: [0, 0, 0], hazy: 0, line: [0.2, 0.25, 0.37], ground: [0, 0, 0], shade: [0, 0, 0, 0.4],
     },
     court: {
-      sunlight: [0.3, 0.36, 0.55], skylight: [0.2, 0.25, 0.42], groundlight: [0.2, 0.13, 0.09],
-      haze: [0.012, 0.02, 0.055], hazy: 0.00004, line: [0.27, 0.31, 0.42], ground: [0.12, 0.13, 0.19],
+      sunlight: [0.5, 0.55, 0.72], skylight: [0.46, 0.4, 0.42], groundlight: [0.34, 0.25, 0.2],
+      haze: [0.012, 0.02, 0.055], hazy: 0.00004, line: [0.34, 0.36, 0.46], ground: [0.17, 0.17, 0.23],
       zenith: [0.03, 0.05, 0.13], horizon: [0.14, 0.17, 0.31], starry: 1,
     },
   },
   light: {
     bench: {
       sunlight: [1.15, 1.1, 1.0], skylight: [0.8, 0.85, 0.95], groundlight: [0.4, 0.38, 0.36],
-      haze: [1, 1, 1], hazy: 0, line: [0.55, 0.62, 0.74], ground: [0, 0, 0], shade: [0.1, 0.13, 0.2, 0.22],
+      haze: [1, 1, 1], hazy: 0, line: [0.74, 0.79, 0.87], ground: [0, 0, 0], shade: [0.1, 0.13, 0.2, 0.22],
     },
     court: {
       sunlight: [0.85, 0.78, 0.62], skylight: [0.42, 0.5, 0.62], groundlight: [0.24, 0.21, 0.18],
