@@ -1,0 +1,44 @@
+//! Where the stream is to come from, as the user says it.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::source::emulated::MOTIONS;
+use crate::source::{Choice, Emulation, Replay};
+
+/// Which board, or what stands for one. Without any of them it is the one board that is plugged in.
+#[derive(Clone, Debug, Default, Args)]
+pub struct SourceArguments {
+    /// The board's serial port, as `vrduino list` names it; tcp:HOST:PORT reads one over the network
+    #[arg(long, value_name = "PORT", group = "source")]
+    pub port: Option<String>,
+    /// The emulated board, in this program
+    #[arg(long, group = "source")]
+    pub emulate: bool,
+    /// A recording of `vrduino record`
+    #[arg(long, value_name = "FILE", group = "source")]
+    pub replay: Option<PathBuf>,
+    /// What the emulated board is carried through: head, turns, still, or the file of a motion
+    #[arg(long, value_name = "MOTION", requires = "emulate", default_value = MOTIONS[0])]
+    pub motion: String,
+    /// What is flashed on the emulated board, ELF or Intel HEX, in the place of this repository's firmware
+    #[arg(long, value_name = "FILE", requires = "emulate")]
+    pub image: Option<PathBuf>,
+}
+
+impl SourceArguments {
+    /// The source they choose.
+    pub fn choice(&self) -> Choice {
+        if let Some(path) = &self.replay {
+            return Choice::Replay(Replay { path: path.clone() });
+        }
+        if self.emulate {
+            return Choice::Emulated(Emulation {
+                image: self.image.clone(),
+                motion: self.motion.clone(),
+            });
+        }
+        Choice::Port(self.port.clone())
+    }
+}

@@ -1,0 +1,246 @@
+//! What is typed to the board, and its answers: one question at a time.
+//!
+//! A board whose program is another than ours takes single letters for keys (`b` measures its bias, `r`
+//! turns it round), so it is asked something that holds none of them before anything else: `:help`.
+
+use std::collections::VecDeque;
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+
+use vrduino::command::request::Setting;
+
+use crate::source::Order;
+
+/// How long an answer may take; the board's start-up takes a second.
+const PATIENCE: Duration = Duration::from_millis(1200);
+
+/// A board that has not answered so often is a stranger: it is asked less often from then on, and sent no lines.
+const ATTEMPTS: u32 = 5;
+
+/// How long it is left alone then.
+const LEFT_ALONE: Duration = Duration::from_secs(5);
+
+const WHO: &str = ":help";
+
+/// What somebody wants of the board.
+#[derive(Debug)]
+pub enum Wish {
+    /// An order for the source, at once.
+    Order(Order),
+    /// A line to be typed.
+    Say(String),
+    /// A line to be typed, and its answer: without `OK`, or the whole `ERR`.
+    Ask(String, Sender<Result<String, String>>),
+}
+
+/// How far a board is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Acquaintance {
+    /// Nobody is there.
+    Nobody,
+    /// It has been asked who it is so often and has not answered.
+    New(u32),
+    /// It answers.
+    Known,
+}
+
+#[derive(Debug)]
+struct Question {
+    line: String,
+    reply: Option<Sender<Result<String, String>>>,
+}
+
+impl Question {
+    fn own(line: impl Into<String>) -> Self {
+        Self {
+            line: line.into(),
+            reply: None,
+        }
+    }
+}
+
+/// The conversation.
+#[derive(Debug)]
+pub struct Conversation {
+    /// What is to be streamed; without it the board is not spoken to unasked.
+    stream: Option<&'static str>,
+    board: Acquaintance,
+    waiting: VecDeque<Question>,
+    asked: Option<(Question, Instant)>,
+    orders: Vec<Order>,
+    /// What the board streamed before it was asked for something else.
+    before: Option<String>,
+}
+
+impl Conversation {
+    pub(super) fn new(stream: Option<&'static str>) -> Self {
+        Self {
+            stream,
+            board: Acquaintance::Nobody,
+            waiting: VecDeque::new(),
+            asked: None,
+            orders: Vec::new(),
+            before: None,
+        }
+    }
+
+    /// A board is there. What was wanted of it before waits until it is known.
+    pub(super) fn begin(&mut self) {
+        self.asked = None;
+        self.before = None;
+        self.board = if self.stream.is_some() {
+            Acquaintance::New(0)
+        } else {
+            Acquaintance::Known
+        };
+    }
+
+    /// It is gone, and what it was asked.
+    pub(super) fn end(&mut self) {
+        self.board = Acquaintance::Nobody;
+        self.waiting.clear();
+        self.asked = None;
+        self.before = None;
+    }
+
+    /// Takes a wish.
+    pub(super) fn wish(&mut self, wish: Wish) {
+        match wish {
+            Wish::Order(order) => self.orders.push(order),
+            Wish::Say(line) => self.waiting.push_back(Question::own(line)),
+            Wish::Ask(line, reply) => self.waiting.push_back(Question {
+                line,
+                reply: Some(reply),
+            }),
+        }
+    }
+
+    /// What is to be done now.
+    pub(super) fn orders(&mut self) -> Vec<Order> {
+        let patience = if self.is_stranger() {
+            LEFT_ALONE
+        } else {
+            PATIENCE
+        };
+        if self
+            .asked
+            .as_ref()
+            .is_some_and(|(_, when)| when.elapsed() > patience)
+        {
+            // Its reply goes with it: who waits is told that nothing came.
+            self.asked = None;
+        }
+        if self.is_stranger() {
+            self.waiting.clear();
+        }
+        if self.asked.is_none() {
+            match self.board {
+                Acquaintance::Nobody => {}
+                Acquaintance::New(attempts) => {
+                    self.board = Acquaintance::New(attempts.saturating_add(1));
+                    self.ask(Question::own(WHO));
+                }
+                Acquaintance::Known => {
+                    if let Some(question) = self.waiting.pop_front() {
+                        self.ask(question);
+                    }
+                }
+            }
+        }
+        std::mem::take(&mut self.orders)
+    }
+
+    fn ask(&mut self, question: Question) {
+        // What half a line there may be ends here.
+        let line = format!("\n{}\n", question.line);
+        self.orders.push(Order::Send(line.into_bytes()));
+        self.asked = Some((question, Instant::now()));
+    }
+
+    /// Whether a board is there that does not answer: its program is another.
+    pub(super) fn is_stranger(&self) -> bool {
+        matches!(self.board, Acquaintance::New(attempts) if attempts > ATTEMPTS)
+    }
+
+    /// A line has come.
+    pub(super) fn hear(&mut self, line: &str) {
+        let answer = match line.strip_prefix("OK ") {
+            Some(answer) => Ok(answer.to_owned()),
+            None if line.starts_with("ERR ") => Err(line.to_owned()),
+            None => return,
+        };
+        let Some((question, _)) = self.asked.take() else {
+            return;
+        };
+        if matches!(self.board, Acquaintance::New(_)) {
+            self.board = Acquaintance::Known;
+            self.introduce();
+            return;
+        }
+        if let (":stream", Ok(answer)) = (question.line.as_str(), &answer)
+            && question.reply.is_none()
+        {
+            self.before.get_or_insert_with(|| answer.clone());
+        }
+        if answer.is_ok() {
+            self.ask_what_changed(&question.line);
+        }
+        if let Some(reply) = question.reply {
+            // Who asked may have lost patience.
+            let _ = reply.send(answer);
+        }
+    }
+
+    /// What is asked of every board, before what anybody wanted meanwhile.
+    fn introduce(&mut self) {
+        let stream = self.stream.unwrap_or_default();
+        let settings = Setting::ALL.map(|setting| format!(":get {}", setting.name()));
+        let lines = [
+            ":stream".into(),
+            format!(":stream {stream}"),
+            ":version".into(),
+            ":estimator".into(),
+        ];
+        for line in lines.into_iter().chain(settings).rev() {
+            self.waiting.push_front(Question::own(line));
+        }
+    }
+
+    /// One setting may move another, and `:defaults` moves all.
+    fn ask_what_changed(&mut self, line: &str) {
+        let all = line == ":defaults";
+        let siblings = |name: &str| matches!(name, "notes-time" | "notes-alpha");
+        let of_notes = line
+            .strip_prefix(":set ")
+            .is_some_and(|rest| rest.starts_with("notes-"));
+        for setting in Setting::ALL {
+            let line = format!(":get {}", setting.name());
+            let wanted = all || of_notes && siblings(setting.name());
+            if wanted && self.waiting.iter().all(|question| question.line != line) {
+                self.waiting.push_back(Question::own(line));
+            }
+        }
+        if all {
+            self.waiting.push_back(Question::own(":estimator"));
+            self.waiting.push_back(Question::own(":stream"));
+        }
+    }
+
+    /// The board is left as it was found.
+    pub(super) fn farewell(&mut self) -> Vec<Order> {
+        let mut orders = std::mem::take(&mut self.orders);
+        if let Some(before) = self.before.take() {
+            let mut lines = String::from("\n");
+            // As `text every 10`.
+            let mut words = before.strip_prefix("stream ").unwrap_or(&before).split(' ');
+            if let Some(stream) = words.next() {
+                lines += &format!(":stream {stream}\n");
+            }
+            if let Some(every) = words.nth(1) {
+                lines += &format!(":every {every}\n");
+            }
+            orders.push(Order::Send(lines.into_bytes()));
+        }
+        orders
+    }
+}
