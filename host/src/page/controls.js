@@ -50,7 +50,8 @@ export class BoardControls {
   /** All of the board's are as after power-on, the stream too, which the page wants otherwise. */
   defaults() {
     this.moved = {};
-    for (const line of [":defaults", ":stream binary", ":estimator", ":get tilt-time", ":get notes-alpha"]) this.send(line);
+    this.send(":defaults");
+    this.send(":stream binary");
   }
 
   /** The other of the two estimators. */

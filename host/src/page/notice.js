@@ -9,7 +9,7 @@ const byId = (id) => document.getElementById(id);
 const STATES = {
   connected: ["connected", "good"],
   waiting: ["no board", "warn"],
-  lost: ["unplugged", "bad"],
+  lost: ["lost", "bad"],
   ended: ["ended", "quiet"],
   gone: ["no program", "bad"],
   opening: ["connecting", "quiet"],
@@ -17,7 +17,7 @@ const STATES = {
 
 const TITLES = {
   waiting: "No board is plugged in",
-  lost: "The board was unplugged",
+  lost: "The board is gone",
   gone: "The program has ended",
   ended: "The recording has ended",
 };
@@ -40,7 +40,8 @@ export class Notice {
     // A recording that has ended leaves its last picture to look at.
     const over = state !== "connected" && state !== "opening" && !(state === "ended" && hasSamples);
     byId("notice").hidden = !over;
-    write("notice-title", TITLES[state] ?? "Nothing to see yet");
+    const starting = kind === "emulated" && state === "waiting";
+    write("notice-title", starting ? "The emulated board is starting" : TITLES[state] ?? "Nothing to see yet");
     write("notice-text", message || "");
     byId("start-emulated").hidden = !(kind === "none" || kind === "port") || state === "gone";
     byId("replug").hidden = !(kind === "emulated" && state === "lost");

@@ -8,8 +8,13 @@ import { DEVICE_TIME, RESTART, STATUS_KNOWN } from "./samples.js";
 /** PJRC's boards; the emulated one never shows here. */
 const TEENSY = { usbVendorId: 0x16c0 };
 const MICROS = 2 ** 32;
-/** What a board is asked when it comes; one that knows none of it streams plain lines. */
-const GREETING = [":stream binary", ":estimator", ":get tilt-time", ":get notes-alpha"];
+/**
+ * What a board is asked first. One whose program is another takes single letters for keys, and in
+ * this there is none of them; it is asked so often, and goes on with what it sends.
+ */
+const WHO = "\n:help";
+const ATTEMPTS = 5;
+const SETTINGS = [":estimator", ":get tilt-time", ":get notes-alpha"];
 
 export const hasSerial = () => "serial" in navigator;
 
@@ -22,7 +27,7 @@ export class SerialBoard {
     this.latest = { message: "", state: "waiting" };
     if (!hasSerial()) return;
     navigator.serial.addEventListener("connect", () => this.again());
-    setInterval(() => this.port && this.tell(), 1000);
+    setInterval(() => this.tick(), 1000);
   }
 
   /** Lets a person choose a port; needs a click. True once one is open. */
@@ -38,8 +43,15 @@ export class SerialBoard {
     this.fresh();
     this.writer = port.writable.getWriter();
     this.tell("connected", "The board talks to this page directly (Web Serial).");
-    GREETING.forEach((line) => this.send(line));
+    this.send(WHO);
     this.read(port);
+  }
+
+  tick() {
+    if (!this.port) return;
+    this.tell();
+    this.attempts += 1;
+    if (this.writer && !this.known && this.attempts < ATTEMPTS) this.send(WHO);
   }
 
   fresh() {
@@ -49,6 +61,8 @@ export class SerialBoard {
       text: (line) => this.text(line),
     });
     this.latency.restart();
+    this.known = false;
+    this.attempts = 0;
     this.settings = {};
     this.estimator = null;
     this.restarts = 0;
@@ -124,6 +138,11 @@ export class SerialBoard {
   }
 
   text(line) {
+    if (!this.known && line.startsWith("OK verbs")) {
+      this.known = true;
+      [":stream binary", ...SETTINGS].forEach((question) => this.send(question));
+    }
+    if (line === "OK defaults") SETTINGS.forEach((question) => this.send(question));
     const estimator = /^OK estimator (\w+)/.exec(line);
     if (estimator) this.estimator = estimator[1];
     const setting = /^OK ([a-z]+-[a-z]+) (-?\d+(?:\.\d+)?)(?: |$)/.exec(line);
@@ -144,7 +163,7 @@ export class SerialBoard {
   }
 
   send(text) {
-    const bytes = new TextEncoder().encode(text.startsWith(":") ? `${text}\n` : text);
+    const bytes = new TextEncoder().encode(text.includes(":") ? `${text}\n` : text);
     if (this.writer) this.writer.write(bytes).catch(() => {});
     else this.intake.line("error: not sent, the board is not plugged in");
   }
