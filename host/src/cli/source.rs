@@ -19,7 +19,7 @@ pub struct SourceArguments {
     /// A recording of `vrduino record`
     #[arg(long, value_name = "FILE", group = "source")]
     pub replay: Option<PathBuf>,
-    /// What the emulated board is carried through: head, turns, still, or the file of a motion
+    /// What the emulated board is carried through: head, turns, hand, still, or the file of a motion
     #[arg(long, value_name = "MOTION", requires = "emulate", default_value = MOTIONS[0])]
     pub motion: String,
     /// What is flashed on the emulated board, ELF or Intel HEX, in the place of this repository's firmware
