@@ -5,6 +5,7 @@
 //! `cargo test -p vrduino-host --test browser -- --ignored pictures`.
 
 mod absence;
+mod bytes;
 mod chromium;
 mod controls;
 mod eyes;
