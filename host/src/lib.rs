@@ -17,6 +17,8 @@ pub mod stream;
 
 pub mod hub;
 
+pub mod web;
+
 pub mod interrupt;
 
 #[cfg(feature = "tui")]
