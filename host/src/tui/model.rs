@@ -89,6 +89,13 @@ impl Model {
         if status.state != State::Connected && self.status.state == State::Connected {
             self.hand = [0.0; 2];
         }
+        // Without a board it is said where the picture would be.
+        if let Some(trouble) = &status.trouble
+            && status.state == State::Connected
+            && self.status.trouble.as_ref() != Some(trouble)
+        {
+            self.note(format!("warning: {trouble}"));
+        }
         self.status = Arc::clone(status);
         self.condition_before = self.condition;
         self.condition.forget();
