@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
+use vrduino_emulator::mpu9250::Part;
 
 use crate::source::emulated::MOTIONS;
 use crate::source::{Choice, Emulation, Replay};
@@ -19,26 +20,62 @@ pub struct SourceArguments {
     /// A recording of `vrduino record`
     #[arg(long, value_name = "FILE", group = "source")]
     pub replay: Option<PathBuf>,
-    /// What the emulated board is carried through: head, turns, still, or the file of a motion
-    #[arg(long, value_name = "MOTION", requires = "emulate", default_value = MOTIONS[0])]
-    pub motion: String,
+    /// What the emulated board is carried through: head, turns, still, tumble, or the file of a motion; head unless the
+    /// command wants another
+    #[arg(long, value_name = "MOTION", requires = "emulate")]
+    pub motion: Option<String>,
     /// What is flashed on the emulated board, ELF or Intel HEX, in the place of this repository's firmware
     #[arg(long, value_name = "FILE", requires = "emulate")]
     pub image: Option<PathBuf>,
+    /// The emulated sensor: perfect, typical (errors drawn within the data sheet's limits) or worst (all at the limit)
+    #[arg(long, value_name = "KIND", requires = "emulate")]
+    pub part: Option<PartKind>,
+    /// Which of the typical or worst parts, and which noise [default: 1]
+    #[arg(long, value_name = "N", requires = "part")]
+    pub seed: Option<u64>,
+    /// Lets the emulated board run as fast as this computer allows
+    #[arg(long, requires = "emulate", hide = true)]
+    pub unpaced: bool,
+}
+
+/// Which individual.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PartKind {
+    /// No error but quantisation.
+    Perfect,
+    /// Errors drawn within the data sheet's limits.
+    Typical,
+    /// Errors at the data sheet's limits.
+    Worst,
 }
 
 impl SourceArguments {
     /// The source they choose.
     pub fn choice(&self) -> Choice {
+        self.choice_moved_by(MOTIONS[0])
+    }
+
+    /// The same; an emulated board is carried through this unless another motion was named.
+    pub fn choice_moved_by(&self, motion: &str) -> Choice {
         if let Some(path) = &self.replay {
             return Choice::Replay(Replay { path: path.clone() });
         }
         if self.emulate {
             return Choice::Emulated(Emulation {
                 image: self.image.clone(),
-                motion: self.motion.clone(),
+                motion: self.motion.clone().unwrap_or_else(|| motion.to_owned()),
+                part: self.part(),
+                paced: !self.unpaced,
             });
         }
         Choice::Port(self.port.clone())
+    }
+    fn part(&self) -> Part {
+        let seed = self.seed.unwrap_or(1);
+        match self.part {
+            None | Some(PartKind::Perfect) => Part::perfect(),
+            Some(PartKind::Typical) => Part::typical(seed),
+            Some(PartKind::Worst) => Part::worst(seed),
+        }
     }
 }
