@@ -62,7 +62,7 @@ fn tumble() -> Turns {
         (X, 180.0, true),
         (X, 90.0, false),
     ];
-    const TIPS: u32 = 6;
+    const TIPS: u32 = 8;
     (0..ROUNDS).fold(Turns::new(STILL, 0.0), |turns, _| {
         let turns = FACES
             .into_iter()
@@ -72,7 +72,7 @@ fn tumble() -> Turns {
             });
         let turns = (0..TIPS).fold(turns, |turns, _| {
             let tip = 180.0 / f64::from(TIPS);
-            turns.turn(Z, 360.0, 2.0).turn(X, tip, 0.4)
+            turns.turn(Z, 360.0, 1.6).turn(X, tip, 0.3)
         });
         turns.turn(X, 180.0, 1.2)
     })
