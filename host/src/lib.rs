@@ -21,6 +21,8 @@ pub mod hub;
 
 pub mod board;
 
+pub mod computer;
+
 pub mod interrupt;
 
 pub mod cli;

@@ -124,6 +124,15 @@ fn open(name: Option<&str>) -> Result<(Box<dyn Link>, String), Failure> {
     Ok((Box::new(port), name))
 }
 
+/// Whether it can be had: opens it and lets go of it again.
+///
+/// # Errors
+///
+/// Why it does not open.
+pub fn try_port(name: &str) -> Result<(), Failure> {
+    open(Some(name)).map(drop)
+}
+
 fn dial(address: &str) -> Result<TcpStream, Failure> {
     let connect = || {
         let stream = TcpStream::connect(address)?;

@@ -23,10 +23,10 @@ const SILENCE: Duration = Duration::from_secs(3);
 const LOOK: f64 = 0.25;
 
 /// Of all directions: more is not worth a search.
-const ENOUGH: f32 = 0.97;
+const ENOUGH: f32 = 0.95;
 
 /// A map that is good enough and has not grown for so long (s) is as full as it will be.
-const GROWN: f64 = 10.0;
+const GROWN: f64 = 8.0;
 
 /// One of the three.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -272,9 +272,18 @@ impl Progress {
         }
         let mut lines = vec![format!("        {}", self.state(procedure))];
         if self.part == Part::Turning {
-            lines.push("        -180° from z, about y            0°: z             x: 90°".into());
+            // Around the board's y: a column is an angle, and these axes lie in the middle row.
+            lines.push("         -z          -x          z           x           -z".into());
             let rows = map(procedure).lines();
-            lines.extend(rows.iter().map(|row| format!("        {row}")));
+            let last = rows.len() - 1;
+            lines.extend(rows.iter().enumerate().map(|(number, row)| {
+                let axis = match number {
+                    0 => " y",
+                    _ if number == last => "-y",
+                    _ => "  ",
+                };
+                format!("     {axis}  {row}")
+            }));
         }
         self.bar.set_message(lines.join("\n"));
         self.bar.tick();
