@@ -53,6 +53,20 @@ pub fn meet(choice: Choice, stream: &'static str) -> Result<Acquaintance, Failur
     }
 }
 
+/// Waits so long for the board, and asks who it is: what it says, if it answers.
+///
+/// # Errors
+///
+/// It is not there.
+pub fn greet(choice: Choice, patience: Duration) -> Result<Option<String>, Failure> {
+    let hub = Hub::start(choice, Some("text"));
+    let updates = hub.subscribe(Hold::All);
+    reach(&updates, Some(patience))?;
+    Ok(wait(&updates, INTRODUCTION, |status| {
+        status.version.clone()
+    }))
+}
+
 /// For how long it is worth waiting.
 pub fn patience(choice: &Choice) -> Option<Duration> {
     matches!(choice, Choice::Port(_)).then_some(PATIENCE)
