@@ -222,6 +222,10 @@ impl Worker {
                 self.tell_status();
             }
         }
+        self.take_leave();
+    }
+
+    fn take_leave(&mut self) {
         for order in self.conversation.farewell() {
             self.source.order(order);
         }
@@ -280,10 +284,14 @@ impl Worker {
             }
             self.source.order(order);
         }
+        if self.conversation.is_stranger() && self.status.estrange() {
+            self.tell_status();
+        }
     }
 
     fn switch(&mut self, choice: Choice) {
         self.number += 1;
+        self.take_leave();
         self.conversation.end();
         self.status = Status::of(&choice);
         self.stream = Stream::new();

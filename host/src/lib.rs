@@ -23,6 +23,8 @@ pub mod board;
 
 pub mod computer;
 
+pub mod web;
+
 pub mod interrupt;
 
 pub mod cli;

@@ -20,7 +20,7 @@ pub struct SourceArguments {
     /// A recording of `vrduino record`
     #[arg(long, value_name = "FILE", group = "source")]
     pub replay: Option<PathBuf>,
-    /// What the emulated board is carried through: head, turns, still, tumble, or the file of a motion; head unless the
+    /// What the emulated board is carried through: head, turns, hand, still, tumble, or the file of a motion; head unless the
     /// command wants another
     #[arg(long, value_name = "MOTION", requires = "emulate")]
     pub motion: Option<String>,

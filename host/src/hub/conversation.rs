@@ -14,8 +14,11 @@ use crate::source::Order;
 /// How long an answer may take; the board's start-up takes a second.
 const PATIENCE: Duration = Duration::from_millis(1200);
 
-/// How often a board that says nothing is asked who it is.
+/// A board that has not answered so often is a stranger: it is asked less often from then on, and sent no lines.
 const ATTEMPTS: u32 = 5;
+
+/// How long it is left alone then.
+const LEFT_ALONE: Duration = Duration::from_secs(5);
 
 const WHO: &str = ":help";
 
@@ -35,8 +38,8 @@ pub enum Wish {
 enum Acquaintance {
     /// Nobody is there.
     Nobody,
-    /// It has been asked so often and has not answered.
-    Stranger(u32),
+    /// It has been asked who it is so often and has not answered.
+    New(u32),
     /// It answers.
     Known,
 }
@@ -81,11 +84,12 @@ impl Conversation {
         }
     }
 
-    /// A board is there.
+    /// A board is there. What was wanted of it before waits until it is known.
     pub(super) fn begin(&mut self) {
-        self.end();
+        self.asked = None;
+        self.before = None;
         self.board = if self.stream.is_some() {
-            Acquaintance::Stranger(0)
+            Acquaintance::New(0)
         } else {
             Acquaintance::Known
         };
@@ -113,23 +117,30 @@ impl Conversation {
 
     /// What is to be done now.
     pub(super) fn orders(&mut self) -> Vec<Order> {
+        let patience = if self.is_stranger() {
+            LEFT_ALONE
+        } else {
+            PATIENCE
+        };
         if self
             .asked
             .as_ref()
-            .is_some_and(|(_, when)| when.elapsed() > PATIENCE)
+            .is_some_and(|(_, when)| when.elapsed() > patience)
         {
             // Its reply goes with it: who waits is told that nothing came.
             self.asked = None;
         }
+        if self.is_stranger() {
+            self.waiting.clear();
+        }
         if self.asked.is_none() {
             match self.board {
                 Acquaintance::Nobody => {}
-                Acquaintance::Stranger(attempts) if attempts < ATTEMPTS => {
-                    self.board = Acquaintance::Stranger(attempts + 1);
+                Acquaintance::New(attempts) => {
+                    self.board = Acquaintance::New(attempts.saturating_add(1));
                     self.ask(Question::own(WHO));
                 }
-                // One that never answers is sent what somebody wants it to be sent.
-                Acquaintance::Stranger(_) | Acquaintance::Known => {
+                Acquaintance::Known => {
                     if let Some(question) = self.waiting.pop_front() {
                         self.ask(question);
                     }
@@ -146,6 +157,11 @@ impl Conversation {
         self.asked = Some((question, Instant::now()));
     }
 
+    /// Whether a board is there that does not answer: its program is another.
+    pub(super) fn is_stranger(&self) -> bool {
+        matches!(self.board, Acquaintance::New(attempts) if attempts > ATTEMPTS)
+    }
+
     /// A line has come.
     pub(super) fn hear(&mut self, line: &str) {
         let answer = match line.strip_prefix("OK ") {
@@ -156,7 +172,7 @@ impl Conversation {
         let Some((question, _)) = self.asked.take() else {
             return;
         };
-        if matches!(self.board, Acquaintance::Stranger(_)) {
+        if matches!(self.board, Acquaintance::New(_)) {
             self.board = Acquaintance::Known;
             self.introduce();
             return;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use vrduino::command::request::Setting;
 
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 use crate::source::{Choice, Kind, emulated};
 use crate::stream::Report;
 
@@ -32,7 +32,7 @@ pub struct Status {
     pub kind: Option<Kind>,
     /// Whether it is there.
     pub state: State,
-    /// Why it is not, and what to do.
+    /// Why it is not, or what is wrong although it is, and what to do.
     pub trouble: Option<Failure>,
     /// How the stream goes.
     pub report: Report,
@@ -71,6 +71,21 @@ impl Status {
         }
     }
 
+    /// How things are, for a person.
+    pub fn sentence(&self) -> String {
+        if let Some(failure) = &self.trouble {
+            return failure.sentence.clone();
+        }
+        match (self.state, self.kind) {
+            (State::Connected, Some(Kind::Replay)) => format!("{} is played", self.source),
+            (State::Connected, _) => format!("{} is connected", self.source),
+            (State::Ended, _) => "the recording is at its end".into(),
+            (_, Some(Kind::Emulated)) => "the emulated board starts".into(),
+            (_, Some(Kind::Replay)) => "the recording is opened".into(),
+            _ => "the board is looked for".into(),
+        }
+    }
+
     pub(super) fn connected(&mut self, name: String) {
         self.source = name;
         self.state = State::Connected;
@@ -88,6 +103,15 @@ impl Status {
         self.settings.clear();
     }
 
+    /// The board does not answer; whether that is news.
+    pub(super) fn estrange(&mut self) -> bool {
+        let news = self.trouble.is_none();
+        let sentence = "the board does not answer as vrduino does: its program is another one, so it is sent keys but no settings (`vrduino flash` changes that)";
+        self.trouble
+            .get_or_insert_with(|| Failure::new(failure::Kind::Stream, sentence));
+        news
+    }
+
     pub(super) fn ended(&mut self, result: &Result<(), Failure>) {
         self.state = State::Ended;
         self.trouble = result.clone().err();
@@ -100,7 +124,10 @@ impl Status {
         };
         let mut words = answer.split(' ');
         match (words.next(), words.next()) {
-            (Some("vrduino"), Some(_)) => self.version = Some(answer.to_owned()),
+            (Some("vrduino"), Some(_)) => {
+                self.version = Some(answer.to_owned());
+                self.trouble = None;
+            }
             (Some("estimator"), Some(name)) => self.estimator = Some(name.to_owned()),
             (Some("stream"), Some(_)) => self.stream = Some(answer["stream ".len()..].to_owned()),
             (Some(name), Some(value)) => {

@@ -1,0 +1,108 @@
+//! A serial port without a cable: a pseudo-terminal, with whatever at its other end.
+
+use std::fs::File;
+use std::io::{Read, Write};
+use std::os::fd::OwnedFd;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use vrduino_emulator::board::{Board, Setup};
+use vrduino_emulator::firmware::{self, BuildOptions};
+use vrduino_emulator::image::Image;
+use vrduino_emulator::motion;
+use vrduino_emulator::time::MILLISECOND;
+
+/// Both ends.
+pub struct Pty {
+    /// What a device would hold.
+    pub device: File,
+    /// What a program opens.
+    pub path: String,
+}
+
+impl Pty {
+    /// A new one, raw, whose device's end does not block.
+    pub fn open() -> Self {
+        let device: OwnedFd =
+            openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a pseudo-terminal");
+        grantpt(&device).expect("granted");
+        unlockpt(&device).expect("unlocked");
+        let path = ptsname(&device, Vec::new())
+            .expect("a name")
+            .to_string_lossy()
+            .into_owned();
+        let other =
+            open(path.as_str(), OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).expect("opens");
+        let mut settings = tcgetattr(&other).expect("settings");
+        settings.make_raw();
+        tcsetattr(&other, OptionalActions::Now, &settings).expect("raw");
+        fcntl_setfl(&device, OFlags::NONBLOCK).expect("does not block");
+        Self {
+            device: device.into(),
+            path,
+        }
+    }
+}
+
+/// The emulated board at the other end, running as fast as it can; it is pulled out when this is dropped.
+pub struct PluggedIn {
+    pub path: String,
+    wanted: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl PluggedIn {
+    /// With the head's motion; what `noise` gives comes before every millisecond of the board's bytes.
+    pub fn new(mut noise: impl FnMut() -> Vec<u8> + Send + 'static) -> Self {
+        let image = firmware::build(BuildOptions { quiet: true }).expect("the firmware builds");
+        let image = Image::open(&image).expect("an image");
+        let Pty { mut device, path } = Pty::open();
+        let wanted = Arc::new(AtomicBool::new(true));
+        let flag = Arc::clone(&wanted);
+        let thread = thread::spawn(move || {
+            let mut board = Board::new(image, Setup::new(motion::built_in()));
+            while flag.load(Ordering::Relaxed) {
+                board.run(MILLISECOND);
+                let mut typed = [0; 256];
+                if let Ok(count) = device.read(&mut typed) {
+                    board.chip().host.send(&typed[..count]);
+                }
+                let mut bytes = noise();
+                bytes.extend(board.chip_quietly().host.take_received());
+                write(&mut device, &bytes, &flag);
+            }
+        });
+        Self {
+            path,
+            wanted,
+            thread: Some(thread),
+        }
+    }
+}
+
+/// Waits for a reader who is slow; what nobody reads is lost, as on a cable.
+fn write(device: &mut File, mut bytes: &[u8], wanted: &AtomicBool) {
+    while !bytes.is_empty() && wanted.load(Ordering::Relaxed) {
+        match device.write(bytes) {
+            Ok(count) => bytes = &bytes[count..],
+            Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => {
+                thread::sleep(Duration::from_millis(1))
+            }
+            Err(_) => return,
+        }
+    }
+}
+
+impl Drop for PluggedIn {
+    fn drop(&mut self) {
+        self.wanted.store(false, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
