@@ -40,7 +40,7 @@ pub fn meet(choice: Choice, stream: &'static str) -> Result<Acquaintance, Failur
         status.version.is_some() && status.stream.as_ref().is_some_and(wanted)
     };
     match wait(&updates, INTRODUCTION, |status| {
-        met(status).then_some(Ok(())).or_else(|| lost(status))
+        met(status).then_some(Ok(())).or_else(|| trouble(status))
     }) {
         Some(Ok(())) => Ok(Acquaintance { hub, updates }),
         Some(Err(failure)) => Err(failure),
@@ -62,9 +62,12 @@ pub fn greet(choice: Choice, patience: Duration) -> Result<Option<String>, Failu
     let hub = Hub::start(choice, Some("text"));
     let updates = hub.subscribe(Hold::All);
     reach(&updates, Some(patience))?;
-    Ok(wait(&updates, INTRODUCTION, |status| {
-        status.version.clone()
-    }))
+    let answer = wait(&updates, INTRODUCTION, |status| {
+        let version = status.version.clone();
+        // A stranger has been asked often enough.
+        (version.is_some() || status.trouble.is_some()).then_some(version)
+    });
+    Ok(answer.flatten())
 }
 
 /// For how long it is worth waiting.
@@ -106,11 +109,9 @@ pub fn reach(
     })
 }
 
-fn lost<T>(status: &Status) -> Option<Result<T, Failure>> {
-    match (&status.trouble, status.state) {
-        (Some(failure), State::Lost | State::Ended) => Some(Err(failure.clone())),
-        _ => None,
-    }
+/// What is wrong with it, now that it was there: it is gone, or a stranger.
+fn trouble<T>(status: &Status) -> Option<Result<T, Failure>> {
+    status.trouble.clone().map(Err)
 }
 
 /// Looks at every status until one will do, the source has ended, or the time is up.

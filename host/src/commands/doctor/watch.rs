@@ -60,6 +60,10 @@ pub fn watch(hub: &Hub, updates: &Subscription) -> Seen {
     // It may say that its sensor is missing, and nothing else.
     while began.elapsed() < INTRODUCTION && !introduced(&watch.seen.status) {
         watch.take(updates.next(Duration::from_millis(50)), false);
+        // A stranger has been asked often enough.
+        if watch.seen.status.trouble.is_some() {
+            break;
+        }
     }
     if watch.seen.status.version.is_some() {
         let began = Instant::now();
