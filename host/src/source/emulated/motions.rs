@@ -51,9 +51,9 @@ fn quarter_turns() -> Turns {
 fn tumble() -> Turns {
     const X: [f64; 3] = [1.0, 0.0, 0.0];
     const Z: [f64; 3] = [0.0, 0.0, 1.0];
-    const ROUNDS: usize = 90;
+    const ROUNDS: usize = 110;
     /// Two seconds are wanted on each face; and some to see that it lies.
-    const REST: f64 = 2.4;
+    const REST: f64 = 2.3;
     /// Which axis, how far, and whether it is a face on which it has not lain yet.
     const FACES: [([f64; 3], f64, bool); 7] = [
         (Z, 90.0, true),
@@ -74,9 +74,9 @@ fn tumble() -> Turns {
             });
         let turns = (0..TIPS).fold(turns, |turns, _| {
             let tip = 180.0 / f64::from(TIPS);
-            turns.turn(Z, 360.0, 1.6).turn(X, tip, 0.3)
+            turns.turn(Z, 360.0, 1.0).turn(X, tip, 0.2)
         });
-        turns.turn(X, 180.0, 1.2)
+        turns.turn(X, 180.0, 1.0)
     })
 }
 
