@@ -1,7 +1,6 @@
 //! Promise: what the calibration finds is what is wrong with the part, the board keeps it, and poor data is refused.
 
-#![allow(dead_code)]
-
+#[allow(dead_code, reason = "each test takes what it needs")]
 mod program;
 
 use program::{Ended, place, vrduino};

@@ -2,10 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
-use vrduino_emulator::mpu9250::Part;
+use clap::Args;
 
-use crate::source::emulated::MOTIONS;
+use crate::source::emulated::{MOTIONS, PartKind};
 use crate::source::{Choice, Emulation, Replay};
 
 /// Which board, or what stands for one. Without any of them it is the one board that is plugged in.
@@ -27,7 +26,7 @@ pub struct SourceArguments {
     /// What is flashed on the emulated board, ELF or Intel HEX, in the place of this repository's firmware
     #[arg(long, value_name = "FILE", requires = "emulate")]
     pub image: Option<PathBuf>,
-    /// The emulated sensor: perfect, typical (errors drawn within the data sheet's limits) or worst (all at the limit)
+    /// The emulated sensor
     #[arg(long, value_name = "KIND", requires = "emulate")]
     pub part: Option<PartKind>,
     /// Which of the typical or worst parts, and which noise [default: 1]
@@ -36,17 +35,6 @@ pub struct SourceArguments {
     /// Lets the emulated board run as fast as this computer allows
     #[arg(long, requires = "emulate", hide = true)]
     pub unpaced: bool,
-}
-
-/// Which individual.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum PartKind {
-    /// No error but quantisation.
-    Perfect,
-    /// Errors drawn within the data sheet's limits.
-    Typical,
-    /// Errors at the data sheet's limits.
-    Worst,
 }
 
 impl SourceArguments {
@@ -64,18 +52,11 @@ impl SourceArguments {
             return Choice::Emulated(Emulation {
                 image: self.image.clone(),
                 motion: self.motion.clone().unwrap_or_else(|| motion.to_owned()),
-                part: self.part(),
+                part: self.part.unwrap_or_default(),
+                seed: self.seed.unwrap_or(1),
                 paced: !self.unpaced,
             });
         }
         Choice::Port(self.port.clone())
-    }
-    fn part(&self) -> Part {
-        let seed = self.seed.unwrap_or(1);
-        match self.part {
-            None | Some(PartKind::Perfect) => Part::perfect(),
-            Some(PartKind::Typical) => Part::typical(seed),
-            Some(PartKind::Worst) => Part::worst(seed),
-        }
     }
 }

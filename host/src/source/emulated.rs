@@ -7,6 +7,7 @@ mod motions;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use clap::ValueEnum;
 use vrduino_emulator::board::{Board, Setup};
 use vrduino_emulator::firmware::{self, BuildOptions};
 use vrduino_emulator::image::Image;
@@ -35,10 +36,34 @@ pub struct Emulation {
     pub image: Option<PathBuf>,
     /// What the sensor is carried through: one of [`MOTIONS`], or a file.
     pub motion: String,
-    /// The individual sensor, and its errors.
-    pub part: Part,
+    /// The individual sensor.
+    pub part: PartKind,
+    /// Which of its kind, and which noise.
+    pub seed: u64,
     /// As fast as a real board; else as fast as this computer allows.
     pub paced: bool,
+}
+
+/// How well a sensor was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum PartKind {
+    /// No error but quantisation
+    #[default]
+    Perfect,
+    /// Errors drawn within the data sheet's limits
+    Typical,
+    /// Errors at the data sheet's limits
+    Worst,
+}
+
+impl Emulation {
+    fn part(&self) -> Part {
+        match self.part {
+            PartKind::Perfect => Part::perfect(),
+            PartKind::Typical => Part::typical(self.seed),
+            PartKind::Worst => Part::worst(self.seed),
+        }
+    }
 }
 
 impl Default for Emulation {
@@ -46,7 +71,8 @@ impl Default for Emulation {
         Self {
             image: None,
             motion: MOTIONS[0].to_owned(),
-            part: Part::perfect(),
+            part: PartKind::default(),
+            seed: 1,
             paced: true,
         }
     }
@@ -123,7 +149,7 @@ impl Session {
     fn new(image: Image, motion: Box<dyn Motion>, hand: Hand, emulation: &Emulation) -> Self {
         let motion: std::sync::Arc<dyn Motion> = motion.into();
         let mut setup = Setup::new(Box::new(motions::Shared(motion.clone())));
-        setup.part = emulation.part;
+        setup.part = emulation.part();
         Self {
             board: Board::new(image, setup),
             motion,
