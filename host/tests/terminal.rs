@@ -148,6 +148,6 @@ fn with_nothing_plugged_in_enter_starts_the_emulated_board() {
 fn where_no_terminal_is_it_says_so() {
     let ended = Program::start(&["tui", "--emulate"]).end();
     assert_eq!(ended.code, Some(6), "{ended:?}");
-    assert!(ended.complained.contains("vrduino monitor"), "{ended:?}");
-    assert!(ended.said.is_empty(), "{ended:?}");
+    assert!(ended.err.contains("vrduino monitor"), "{ended:?}");
+    assert!(ended.out.is_empty(), "{ended:?}");
 }
