@@ -235,7 +235,8 @@ impl Worker {
         match event {
             Event::Connected(name) => {
                 self.stream.reconnect();
-                self.conversation.begin();
+                let listens = self.status.kind != Some(source::Kind::Replay);
+                self.conversation.begin(listens);
                 self.status.connected(name);
                 self.tell_status();
             }

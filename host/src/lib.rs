@@ -17,6 +17,8 @@ pub mod stream;
 
 pub mod hub;
 
+pub mod recording;
+
 pub mod interrupt;
 
 pub mod cli;

@@ -85,10 +85,11 @@ impl Conversation {
     }
 
     /// A board is there. What was wanted of it before waits until it is known.
-    pub(super) fn begin(&mut self) {
+    /// One that listens to nobody, as a recording, is not asked who it is.
+    pub(super) fn begin(&mut self, listens: bool) {
         self.asked = None;
         self.before = None;
-        self.board = if self.stream.is_some() {
+        self.board = if self.stream.is_some() && listens {
             Acquaintance::New(0)
         } else {
             Acquaintance::Known
