@@ -104,6 +104,11 @@ impl Player {
         }
     }
 
+    /// Whether there has been no sample.
+    pub fn is_empty(&self) -> bool {
+        self.at.is_none()
+    }
+
     /// How it ended, in a sentence.
     pub fn farewell(&self) -> String {
         let ending = self.reader.ending();

@@ -29,6 +29,7 @@ pub struct Writer {
     segment: i32,
     has_counts: bool,
     has_begun: bool,
+    has_failed: bool,
     flushed: Instant,
 }
 
@@ -50,6 +51,7 @@ impl Writer {
             segment: 0,
             has_counts: false,
             has_begun: false,
+            has_failed: false,
             flushed: Instant::now(),
         })
     }
@@ -69,6 +71,11 @@ impl Writer {
     /// Whether the head is written.
     pub fn has_begun(&self) -> bool {
         self.has_begun
+    }
+
+    /// Whether the file takes nothing any more.
+    pub fn has_failed(&self) -> bool {
+        self.has_failed
     }
 
     /// Takes an entry.
@@ -143,16 +150,38 @@ impl Writer {
 
     fn flush(&mut self) -> Result<(), Failure> {
         self.flushed = Instant::now();
-        if let Err(error) = self.file.write_all(self.pending.as_bytes()) {
-            // Half a line is none.
-            let _ = self.file.set_len(self.bytes);
-            return Err(self.refused(&error));
+        let mut written = 0;
+        while written < self.pending.len() {
+            match self.file.write(&self.pending.as_bytes()[written..]) {
+                Ok(0) => return Err(self.give_up(written, &io::ErrorKind::WriteZero.into())),
+                Ok(count) => written += count,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(self.give_up(written, &error)),
+            }
         }
         self.bytes += self.pending.len() as u64;
         self.rows += self.pending_rows;
         self.pending.clear();
         self.pending_rows = 0;
         Ok(())
+    }
+
+    /// So much of what was pending is in the file, and no more will be: half a line of it is none.
+    fn give_up(&mut self, written: usize, error: &io::Error) -> Failure {
+        let written = &self.pending.as_bytes()[..written];
+        let whole = written.iter().rposition(|&byte| byte == b'\n');
+        let whole = &written[..whole.map_or(0, |end| end + 1)];
+        self.bytes += whole.len() as u64;
+        self.rows += whole
+            .split_inclusive(|&byte| byte == b'\n')
+            .filter(|line| line[0].is_ascii_digit() || line[0] == b'-')
+            .count() as u64;
+        // What cannot be cut off either is passed over by the reader.
+        let _ = self.file.set_len(self.bytes);
+        self.pending.clear();
+        self.pending_rows = 0;
+        self.has_failed = true;
+        self.refused(error)
     }
 
     fn refused(&self, error: &io::Error) -> Failure {
