@@ -173,8 +173,8 @@ pub fn row(cells: &Cells) -> Result<(Row, i32), String> {
         return Err("w, x, y and z should be a quaternion of length 1".into());
     }
     let sample = Sample {
-        time: reader.number(0)?,
-        arrival: reader.number(1)?,
+        time: reader.time(0)?,
+        arrival: reader.time(1)?,
         orientation: UnitQuaternion::new_unchecked(q),
         sequence: reader.integer(3)?,
         status: reader.status()?,
@@ -196,6 +196,15 @@ impl Cursor<'_> {
         match self.0[at] {
             Cell::Number(value) => Ok(value),
             _ => Err(missing(at)),
+        }
+    }
+
+    /// Thirty years are enough.
+    fn time(&self, at: usize) -> Result<f64, String> {
+        let time = self.number(at)?;
+        match time.abs() {
+            ..1e9 => Ok(time),
+            _ => Err(format!("{} cannot be {time}", COLUMNS[at].name)),
         }
     }
 
