@@ -84,7 +84,7 @@ fn play(
     const NAP: Duration = Duration::from_millis(50);
     let began = Instant::now();
     let mut bytes = Vec::new();
-    while let Some(batch) = player.next()? {
+    while let Some(batch) = player.next_batch()? {
         loop {
             if interrupt.has_come() {
                 return Ok(false);

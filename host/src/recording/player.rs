@@ -57,7 +57,7 @@ impl Player {
     /// # Errors
     ///
     /// As for [`Reader::read`].
-    pub fn next(&mut self) -> Result<Option<Batch>, Failure> {
+    pub fn next_batch(&mut self) -> Result<Option<Batch>, Failure> {
         let mut batch: Option<Batch> = None;
         loop {
             let entry = match self.next.take() {

@@ -85,7 +85,7 @@ impl Reader {
     pub fn read(&mut self) -> Result<Option<Entry>, Failure> {
         match &mut self.rows {
             #[cfg(feature = "parquet")]
-            Rows::Parquet(rows) => match rows.next() {
+            Rows::Parquet(rows) => match rows.read() {
                 Ok(Some(parquet::Next::Row(row, segment))) => {
                     Ok(Some(Entry::Row(self.count(row, segment))))
                 }

@@ -92,7 +92,7 @@ impl Performance<'_> {
 
     fn play(&mut self, mut player: Player) -> Result<Result<(), Failure>, Gone> {
         loop {
-            match player.next() {
+            match player.next_batch() {
                 Ok(Some(batch)) => self.pass_on(&batch)?,
                 Ok(None) => break,
                 Err(failure) => return Ok(Err(failure)),

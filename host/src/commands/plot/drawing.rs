@@ -176,7 +176,7 @@ impl Page<'_> {
         };
         let (x, y) = (decimals(&times), decimals(&values));
         let as_time = |value: &f64| match is_last {
-            true => format!("{value:.x$}"),
+            true => number(*value, x),
             false => String::new(),
         };
         let height = area.dim_in_pixel().1;
@@ -189,7 +189,7 @@ impl Page<'_> {
             .x_labels(10)
             .y_labels((height / self.size(45)).max(2) as usize)
             .x_label_formatter(&as_time)
-            .y_label_formatter(&|value| format!("{value:.y$}"))
+            .y_label_formatter(&|&value| number(value, y))
             .label_style(text.clone())
             .axis_desc_style(text)
             .y_desc(name)
@@ -203,7 +203,7 @@ impl Page<'_> {
             let style = self.stroke(*colour, 1.4);
             match points.as_slice() {
                 &[point] => {
-                    let dot = Circle::new(point, self.px(2), colour.filled());
+                    let dot = Circle::new(point, self.px(3), colour.filled());
                     chart.draw_series([dot])?;
                 }
                 _ if self.pieces == Pieces::Whole => {
@@ -269,4 +269,10 @@ fn roomy(range: Option<(f64, f64)>, least: f64) -> Range<f64> {
 fn union(ranges: impl IntoIterator<Item = Option<(f64, f64)>>) -> Option<(f64, f64)> {
     let both = |(a, b): (f64, f64), (c, d): (f64, f64)| (a.min(c), b.max(d));
     ranges.into_iter().flatten().reduce(both)
+}
+
+/// As text; what is rounded to zero has no sign.
+fn number(value: f64, decimals: usize) -> String {
+    let unit = 10_f64.powi(decimals as i32);
+    format!("{:.decimals$}", (value * unit).round() / unit + 0.0)
 }

@@ -173,7 +173,8 @@ impl Survey {
     }
 
     fn describe(&self) -> String {
-        let mut text = format!("{} samples in {:.1} s", self.samples, self.now);
+        let several = if self.samples == 1 { "" } else { "s" };
+        let mut text = format!("{} sample{several} in {:.1} s", self.samples, self.now);
         let parts = [
             (self.missing, "missing", "missing"),
             (self.gaps.count(), "gap", "gaps"),

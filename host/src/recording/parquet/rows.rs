@@ -9,7 +9,7 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
 use super::super::columns::{COLUMNS, COMPASS, Cell, Cells, PLAIN, columns, row};
-use super::super::csv::{Said, read};
+use super::super::csv::{self, Said};
 use super::super::reader::{no_recording, other_version};
 use super::{HEAD, KEY, REMARKS};
 use crate::failure::{Failure, Kind};
@@ -82,7 +82,7 @@ pub fn open(path: &Path, file: File) -> Result<(Head, Rows), Failure> {
         .lines()
         .filter_map(|line| {
             let (row, rest) = line.split_once(' ')?;
-            match read(rest, false) {
+            match csv::read(rest, false) {
                 Ok(Said::Remark(remark)) => Some((row.parse().ok()?, remark)),
                 _ => None,
             }
@@ -109,7 +109,7 @@ pub fn damaged(path: &Path, what: &str) -> Failure {
 
 impl Rows {
     /// The next, or what is wrong with it.
-    pub fn next(&mut self) -> Result<Option<Next>, String> {
+    pub fn read(&mut self) -> Result<Option<Next>, String> {
         if self.batch.is_empty() {
             self.read_batch().map_err(|error| error.to_string())?;
         }
