@@ -19,6 +19,8 @@ pub mod hub;
 
 pub mod recording;
 
+pub mod web;
+
 pub mod interrupt;
 
 pub mod cli;

@@ -88,6 +88,8 @@ pub enum Order {
     Send(Vec<u8>),
     /// Start the emulated board again with its sensor carried through another motion.
     Motion(String),
+    /// Turn the emulated sensor there, if its motion is `hand`: body to world, w, x, y, z.
+    Turn([f64; 4]),
     /// Pull the emulated board's plug, or put it back.
     Plug(bool),
 }

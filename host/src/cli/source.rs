@@ -25,7 +25,7 @@ pub struct SourceArguments {
     /// When the recording is over it begins again
     #[arg(long, requires = "replay")]
     pub repeat: bool,
-    /// What the emulated board is carried through: head, turns, still, or the file of a motion
+    /// What the emulated board is carried through: head, turns, hand, still, or the file of a motion
     #[arg(long, value_name = "MOTION", requires = "emulate", default_value = MOTIONS[0])]
     pub motion: String,
     /// What is flashed on the emulated board, ELF or Intel HEX, in the place of this repository's firmware

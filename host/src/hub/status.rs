@@ -71,6 +71,21 @@ impl Status {
         }
     }
 
+    /// How things are, for a person.
+    pub fn sentence(&self) -> String {
+        if let Some(failure) = &self.trouble {
+            return failure.sentence.clone();
+        }
+        match (self.state, self.kind) {
+            (State::Connected, Some(Kind::Replay)) => format!("{} is played", self.source),
+            (State::Connected, _) => format!("{} is connected", self.source),
+            (State::Ended, _) => "the recording is at its end".into(),
+            (_, Some(Kind::Emulated)) => "the emulated board starts".into(),
+            (_, Some(Kind::Replay)) => "the recording is opened".into(),
+            _ => "the board is looked for".into(),
+        }
+    }
+
     pub(super) fn connected(&mut self, name: String) {
         self.source = name;
         self.state = State::Connected;

@@ -1,5 +1,7 @@
 //! The emulated board, in this very program: boots the image that is flashed, at the pace of a real one.
 
+mod hand;
+
 mod motions;
 
 use std::path::PathBuf;
@@ -13,6 +15,7 @@ use vrduino_emulator::time::{self, MILLISECOND, Ticks};
 
 use super::{Event, Gone, Listener, Order, Truth};
 use crate::failure::{Failure, Kind};
+use hand::Hand;
 pub use motions::NAMES as MOTIONS;
 
 /// What it is called.
@@ -44,8 +47,9 @@ impl Default for Emulation {
 
 /// Builds the image and runs the board until nobody listens.
 pub(super) fn run(mut emulation: Emulation, listener: &mut Listener) -> Result<(), Gone> {
+    let mut hand = Hand::default();
     let started = prepare(&emulation, listener)?.and_then(|image| {
-        let motion = motions::open(&emulation.motion)?;
+        let motion = motions::open(&emulation.motion, &hand)?;
         Ok((image, motion))
     });
     let (image, mut motion) = match started {
@@ -53,10 +57,11 @@ pub(super) fn run(mut emulation: Emulation, listener: &mut Listener) -> Result<(
         Err(failure) => return listener.tell(Event::Ended(Err(failure))),
     };
     loop {
-        let mut session = Session::new(image.clone(), motion);
+        let mut session = Session::new(image.clone(), motion, hand);
         let name = session.run(listener)?;
         // Asked for another motion: the board is switched off and on again.
-        motion = match motions::open(&name) {
+        hand = Hand::default();
+        motion = match motions::open(&name, &hand) {
             Ok(other) => {
                 listener.tell(Event::Lost(Failure::new(
                     Kind::Board,
@@ -67,7 +72,7 @@ pub(super) fn run(mut emulation: Emulation, listener: &mut Listener) -> Result<(
             }
             Err(failure) => {
                 listener.tell(Event::Waiting(failure))?;
-                match motions::open(&emulation.motion) {
+                match motions::open(&emulation.motion, &hand) {
                     Ok(same) => same,
                     Err(failure) => return listener.tell(Event::Ended(Err(failure))),
                 }
@@ -98,6 +103,7 @@ fn prepare(emulation: &Emulation, listener: &mut Listener) -> Result<Result<Imag
 struct Session {
     board: Board,
     motion: std::sync::Arc<dyn Motion>,
+    hand: Hand,
     plugged: bool,
     /// Whether its port has been opened since it was last plugged in.
     open: bool,
@@ -107,12 +113,13 @@ struct Session {
 }
 
 impl Session {
-    fn new(image: Image, motion: Box<dyn Motion>) -> Self {
+    fn new(image: Image, motion: Box<dyn Motion>, hand: Hand) -> Self {
         let motion: std::sync::Arc<dyn Motion> = motion.into();
         let setup = Setup::new(Box::new(motions::Shared(motion.clone())));
         Self {
             board: Board::new(image, setup),
             motion,
+            hand,
             plugged: true,
             open: false,
             next_truth: 0,
@@ -127,6 +134,7 @@ impl Session {
                 match order {
                     Order::Send(bytes) => self.board.chip_quietly().host.send(&bytes),
                     Order::Motion(name) => return Ok(name),
+                    Order::Turn(orientation) => self.hand.turn_to(orientation),
                     Order::Plug(plugged) => self.plug(plugged, listener)?,
                 }
             }

@@ -63,7 +63,7 @@ fn read(link: &mut dyn Link, listener: &mut Listener, began: Instant) -> Result<
                         return Ok(error);
                     }
                 }
-                Ok(Some(Order::Motion(_) | Order::Plug(_))) => {}
+                Ok(Some(Order::Motion(_) | Order::Turn(_) | Order::Plug(_))) => {}
                 Ok(None) => break,
                 Err(gone) => return Err(gone),
             }

@@ -137,7 +137,7 @@ impl Performance<'_> {
             let left = due.saturating_sub(self.began.elapsed());
             match self.listener.order_within(left)? {
                 Some(Order::Send(bytes)) => self.refuse(&bytes)?,
-                Some(Order::Motion(_) | Order::Plug(_)) => {}
+                Some(_) => {}
                 None => return Ok(()),
             }
         }

@@ -5,19 +5,21 @@ use std::sync::Arc;
 
 use vrduino_emulator::motion::{self, Instant, Motion, Turns};
 
+use super::hand::Hand;
 use crate::failure::{Failure, Kind};
 
 /// Those that have a name, the usual one first.
-pub const NAMES: [&str; 3] = ["head", "turns", "still"];
+pub const NAMES: [&str; 4] = ["head", "turns", "hand", "still"];
 
 /// Long enough for the gyro's bias to be measured.
 const STILL: f64 = 3.0;
 
-/// The motion of this name, or in this file.
-pub fn open(name: &str) -> Result<Box<dyn Motion>, Failure> {
+/// The motion of this name, or in this file; `hand` is the one to turn it by.
+pub fn open(name: &str, hand: &Hand) -> Result<Box<dyn Motion>, Failure> {
     Ok(match name {
         "head" => motion::built_in(),
         "turns" => Box::new(quarter_turns()),
+        "hand" => Box::new(hand.clone()),
         "still" => Box::new(Turns::new(STILL, 0.0)),
         path if Path::new(path).exists() => motion::open(Path::new(path))
             .map_err(|error| Failure::new(Kind::File, error.to_string()))?,

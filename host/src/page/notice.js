@@ -1,0 +1,52 @@
+// What stands over the picture while there is nothing to see, with what can be done about it.
+
+import { write } from "./status.js";
+import { hasSerial } from "./serial.js";
+
+const byId = (id) => document.getElementById(id);
+
+/** Word and mood of each state. */
+const STATES = {
+  connected: ["connected", "good"],
+  waiting: ["no board", "warn"],
+  lost: ["lost", "bad"],
+  ended: ["ended", "quiet"],
+  gone: ["no program", "bad"],
+  opening: ["connecting", "quiet"],
+};
+
+const TITLES = {
+  waiting: "No board is plugged in",
+  lost: "The board is gone",
+  gone: "The program has ended",
+  ended: "The recording has ended",
+};
+
+export class Notice {
+  constructor({ startEmulated, openSerial, closeSerial, replug }) {
+    byId("start-emulated").addEventListener("click", startEmulated);
+    byId("replug").addEventListener("click", replug);
+    for (const button of document.querySelectorAll(".open-serial")) {
+      button.hidden = !hasSerial();
+      button.addEventListener("click", openSerial);
+    }
+    byId("close-serial").addEventListener("click", closeSerial);
+  }
+
+  show({ kind, state, source, message }, hasSamples) {
+    const [word, mood] = STATES[state] ?? [state, "quiet"];
+    write("state", word, mood);
+    write("source", source || "");
+    // A recording that has ended leaves its last picture to look at.
+    const over = state !== "connected" && state !== "opening" && !(state === "ended" && hasSamples);
+    byId("notice").hidden = !over;
+    const starting = kind === "emulated" && state === "waiting";
+    write("notice-title", starting ? "The emulated board is starting" : TITLES[state] ?? "Nothing to see yet");
+    write("notice-text", message || "");
+    byId("start-emulated").hidden = !(kind === "none" || kind === "port") || state === "gone";
+    byId("replug").hidden = !(kind === "emulated" && state === "lost");
+    byId("close-serial").hidden = kind !== "serial";
+    const opener = document.querySelector("#panel .open-serial");
+    if (opener) opener.hidden = !hasSerial() || kind === "serial";
+  }
+}

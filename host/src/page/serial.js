@@ -1,0 +1,175 @@
+// A board without the program between: Web Serial, where the browser has it. To the rest of the page
+// it is what the program is, samples and a status a second.
+
+import { Decoder } from "./wire.js";
+import { Latency } from "./latency.js";
+import { DEVICE_TIME, RESTART, STATUS_KNOWN } from "./samples.js";
+
+/** PJRC's boards; the emulated one never shows here. */
+const TEENSY = { usbVendorId: 0x16c0 };
+const MICROS = 2 ** 32;
+/**
+ * What a board is asked first. One whose program is another takes single letters for keys, and in
+ * this there is none of them; it is asked so often, and goes on with what it sends.
+ */
+const WHO = "\n:help";
+const ATTEMPTS = 5;
+const SETTINGS = [":estimator", ":get tilt-time", ":get notes-alpha"];
+
+export const hasSerial = () => "serial" in navigator;
+
+export class SerialBoard {
+  constructor(intake) {
+    this.intake = intake;
+    this.port = null;
+    this.writer = null;
+    this.latency = new Latency();
+    this.latest = { message: "", state: "waiting" };
+    if (!hasSerial()) return;
+    navigator.serial.addEventListener("connect", () => this.again());
+    setInterval(() => this.tick(), 1000);
+  }
+
+  /** Lets a person choose a port; needs a click. True once one is open. */
+  async choose() {
+    const port = await navigator.serial.requestPort({ filters: [TEENSY] });
+    await this.open(port);
+  }
+
+  async open(port) {
+    // The number is nothing to a board on USB, but one must be given.
+    await port.open({ baudRate: 115200, bufferSize: 65536 });
+    this.port = port;
+    this.fresh();
+    this.writer = port.writable.getWriter();
+    this.tell("connected", "The board talks to this page directly (Web Serial).");
+    this.send(WHO);
+    this.read(port);
+  }
+
+  tick() {
+    if (!this.port) return;
+    this.tell();
+    this.attempts += 1;
+    if (this.writer && !this.known && this.attempts < ATTEMPTS) this.send(WHO);
+  }
+
+  fresh() {
+    this.decoder = new Decoder({
+      orientation: (w, x, y, z, sequence, micros, status) =>
+        this.sample(w, x, y, z, sequence, micros, status),
+      text: (line) => this.text(line),
+    });
+    this.latency.restart();
+    this.known = false;
+    this.attempts = 0;
+    this.settings = {};
+    this.estimator = null;
+    this.restarts = 0;
+    this.unwrapped = NaN;
+    this.micros = 0;
+    this.counted = 0;
+    this.anew = true;
+  }
+
+  async read(port) {
+    const reader = port.readable.getReader();
+    try {
+      for (;;) {
+        const { value, done } = await reader.read();
+        if (done) break;
+        this.decoder.push(value);
+      }
+    } catch {
+      // Unplugged: the same as its end.
+    }
+    reader.releaseLock();
+    if (this.port === port) this.lost(port);
+  }
+
+  lost(port) {
+    this.writer?.releaseLock();
+    this.writer = null;
+    port.close().catch(() => {});
+    this.tell("lost", "The board was unplugged. Plug it in again; the page goes on by itself.");
+  }
+
+  /** A port that was allowed before has come back. */
+  async again() {
+    if (!this.port || this.writer) return;
+    const [port] = await navigator.serial.getPorts();
+    if (port) await this.open(port).catch((error) => this.intake.line(`error: ${error.message}`));
+  }
+
+  async close() {
+    const port = this.port;
+    this.port = null;
+    this.writer?.releaseLock();
+    this.writer = null;
+    await port?.close().catch(() => {});
+  }
+
+  sample(w, x, y, z, sequence, micros, status) {
+    const host = performance.now() / 1000;
+    let flags = this.anew ? RESTART : 0;
+    let late = NaN;
+    let time = host;
+    if (sequence >= 0) {
+      flags |= this.follow(micros) | DEVICE_TIME;
+      time = this.unwrapped;
+      late = this.latency.take(time, host);
+    }
+    if (status >= 0) flags |= status | STATUS_KNOWN;
+    this.anew = false;
+    this.counted += 1;
+    this.intake.sample(time, w, x, y, z, late, Math.max(sequence, 0), flags);
+  }
+
+  /** The device's time goes on where its 32 bits begin again, and anew where the board has. */
+  follow(micros) {
+    const anew = !(this.unwrapped >= 0) || this.decoder.losses.restarts > this.restarts;
+    this.restarts = this.decoder.losses.restarts;
+    if (anew) {
+      this.unwrapped = micros / 1e6;
+      this.latency.restart();
+    } else this.unwrapped += ((micros - this.micros + MICROS) % MICROS) / 1e6;
+    this.micros = micros;
+    return anew ? RESTART : 0;
+  }
+
+  text(line) {
+    if (!this.known && line.startsWith("OK verbs")) {
+      this.known = true;
+      [":stream binary", ...SETTINGS].forEach((question) => this.send(question));
+    }
+    if (line === "OK defaults") SETTINGS.forEach((question) => this.send(question));
+    const estimator = /^OK estimator (\w+)/.exec(line);
+    if (estimator) this.estimator = estimator[1];
+    const setting = /^OK ([a-z]+-[a-z]+) (-?\d+(?:\.\d+)?)(?: |$)/.exec(line);
+    if (setting) this.settings[setting[1]] = Number(setting[2]);
+    this.intake.line(line);
+    if (estimator || setting) this.tell();
+  }
+
+  tell(state = this.latest.state, message = this.latest.message) {
+    this.latest = { state, message };
+    const { bytes, damaged, malformed, missing, restarts } = this.decoder.losses;
+    this.intake.status({
+      type: "status", kind: "serial", source: "Web Serial", state, message,
+      latency_ms: this.latency.percentiles(),
+      gaps: missing, crc_errors: damaged, malformed, thrown_away: bytes, dropped: 0, restarts,
+      estimator: this.estimator, settings: this.settings, motions: [], motion: null,
+    });
+  }
+
+  send(text) {
+    const bytes = new TextEncoder().encode(text.includes(":") ? `${text}\n` : text);
+    if (this.writer) this.writer.write(bytes).catch(() => {});
+    else this.intake.line("error: not sent, the board is not plugged in");
+  }
+
+  /** What only the program can do. */
+  ask() {
+    this.intake.line("error: only with the emulated board");
+  }
+}

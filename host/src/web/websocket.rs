@@ -1,0 +1,152 @@
+//! A WebSocket that never makes anybody wait: what does not go out now goes out later, and a browser
+//! that takes nothing for too long is given up.
+
+use std::io::{self, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+use tungstenite::handshake::server::{create_response, write_response};
+use tungstenite::http::StatusCode;
+use tungstenite::http::header::UPGRADE;
+use tungstenite::protocol::frame::coding::CloseCode;
+use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
+use tungstenite::{Error, Message, WebSocket};
+
+use super::http::{self, Incoming, Response};
+
+/// Of what a page has to say.
+const MESSAGE: usize = 4 * 1024;
+
+/// Of what waits for a page, besides what the system holds.
+const WAITING: usize = 1024 * 1024;
+
+/// How long a page may take nothing.
+pub const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Why a connection is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// The other end has left, or does not keep to the protocol.
+    Left,
+    /// The other end takes nothing.
+    TooSlow,
+}
+
+/// The connection.
+#[derive(Debug)]
+pub struct Socket {
+    socket: WebSocket<TcpStream>,
+    /// Since when something has been waiting to go out.
+    stuck: Option<Instant>,
+}
+
+/// The answer to a request that is to become a WebSocket.
+///
+/// # Errors
+///
+/// The answer to one that cannot.
+pub fn check(incoming: &Incoming) -> Result<Vec<u8>, Response> {
+    let request = &incoming.request;
+    let mut bytes = Vec::new();
+    let response =
+        create_response(request).and_then(|response| write_response(&mut bytes, &response));
+    if response.is_ok() {
+        return Ok(bytes);
+    }
+    if request.headers().contains_key(UPGRADE) {
+        let sentence = "This is no handshake of a WebSocket (RFC 6455, version 13).";
+        return Err(http::text(StatusCode::BAD_REQUEST, sentence));
+    }
+    let sentence = "Here is a stream, not a page: open it as a WebSocket.";
+    Err(Response {
+        field: Some(("Upgrade", "websocket")),
+        ..http::text(StatusCode::UPGRADE_REQUIRED, sentence)
+    })
+}
+
+impl Socket {
+    /// Sends the answer of [`check`]; from then on it is one.
+    ///
+    /// # Errors
+    ///
+    /// The connection breaks.
+    pub fn open(mut stream: TcpStream, answer: &[u8], rest: Vec<u8>) -> io::Result<Self> {
+        stream.set_write_timeout(Some(http::PATIENCE))?;
+        stream.write_all(answer)?;
+        stream.set_nodelay(true)?;
+        stream.set_nonblocking(true)?;
+        let config = WebSocketConfig::default()
+            .max_message_size(Some(MESSAGE))
+            .max_frame_size(Some(MESSAGE))
+            .write_buffer_size(0)
+            .max_write_buffer_size(WAITING);
+        Ok(Self {
+            socket: WebSocket::from_partially_read(stream, rest, Role::Server, Some(config)),
+            stuck: None,
+        })
+    }
+
+    /// Sends, now or as soon as it goes out.
+    ///
+    /// # Errors
+    ///
+    /// The connection is over.
+    pub fn send(&mut self, message: impl Into<Message>) -> Result<(), Over> {
+        let sent = self.socket.send(message.into());
+        self.went(sent)
+    }
+
+    /// Whether all has gone out; otherwise nothing more should be sent yet.
+    ///
+    /// # Errors
+    ///
+    /// The connection is over.
+    pub fn is_clear(&mut self) -> Result<bool, Over> {
+        if self.stuck.is_some() {
+            let flushed = self.socket.flush();
+            self.went(flushed)?;
+        }
+        Ok(self.stuck.is_none())
+    }
+
+    fn went(&mut self, result: Result<(), Error>) -> Result<(), Over> {
+        match result {
+            Ok(()) => self.stuck = None,
+            Err(Error::Io(error)) if http::is_patient(&error) => {
+                let since = *self.stuck.get_or_insert_with(Instant::now);
+                if since.elapsed() > PATIENCE {
+                    return Err(Over::TooSlow);
+                }
+            }
+            Err(Error::WriteBufferFull(_)) => return Err(Over::TooSlow),
+            Err(_) => return Err(Over::Left),
+        }
+        Ok(())
+    }
+
+    /// What the other end has said, if it has.
+    ///
+    /// # Errors
+    ///
+    /// The connection is over.
+    pub fn receive(&mut self) -> Result<Option<String>, Over> {
+        match self.socket.read() {
+            Ok(Message::Text(text)) => Ok(Some(text.as_str().to_owned())),
+            // Answered by the library, or said by nobody whom this is for.
+            Ok(_) => Ok(None),
+            Err(Error::Io(error)) if http::is_patient(&error) => Ok(None),
+            Err(_) => Err(Over::Left),
+        }
+    }
+
+    /// Says good-bye, and why.
+    pub fn close(mut self, reason: &'static str) {
+        let frame = CloseFrame {
+            code: CloseCode::Away,
+            reason: reason.into(),
+        };
+        // Who does not listen is not waited for.
+        let _ = self.socket.close(Some(frame));
+        let _ = self.socket.flush();
+    }
+}
