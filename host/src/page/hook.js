@@ -1,44 +1,41 @@
-// What a test, or a curious person in the browser's console, may read: `window.vrduino`.
-
-import { rotation, matrix, viewOfEye, LEFT, RIGHT } from "./view.js";
+// What a test, or a curious person at the browser's own console, may read: `window.vrduino`.
 
 export function expose({ samples, history, picture, terminal, shown }) {
-  const worn = () => ({
-    turnedAround: picture.viewer.turnedAround,
-    ipd: picture.viewer.ipd,
-    neck: picture.neckOn ? picture.viewer.neck : 0,
-    head: picture.neckOn ? picture.viewer.head : 0,
-    position: [...picture.viewer.position],
-  });
-  const eye = (side) => Array.from(viewOfEye(matrix(), worn(), samples.quaternion, side));
   const now = {
+    /** Samples taken in since the page was opened. */
     count: () => samples.count,
+    /** The latest: w, x, y, z, body to world; its moment in s; its flags (samples.js). */
     quaternion: () => Array.from(samples.quaternion),
     time: () => samples.latest.time,
     flags: () => samples.latest.flags,
-    sequence: () => samples.latest.sequence,
+    angles: () => Array.from(history.angles),
     hertz: () => history.hertz,
     lost: () => history.lost,
-    angles: () => Array.from(history.angles),
-    model: () => Array.from(rotation(matrix(), samples.quaternion)),
-    /** What the last picture was drawn with. */
-    drawn: () => ({
-      model: Array.from(picture.model), left: Array.from(picture.views.left), right: Array.from(picture.views.right),
-    }),
-    left: () => eye(LEFT),
-    right: () => eye(RIGHT),
-    projections: () => ({ left: Array.from(picture.projections.left), right: Array.from(picture.projections.right) }),
-    viewer: worn,
     mode: () => picture.mode,
-    frames: () => picture.frames,
-    graphics: () => (picture.gl ? (picture.lost ? "lost" : "drawn") : "none"),
+    /** Who wears the headset, as the matrices have it. */
+    viewer: () => ({ ...picture.worn(), position: [...picture.viewer.position] }),
+    /** The matrices of the latest picture, and what it was turned by. */
+    picture: () => ({
+      frames: picture.frames,
+      quaternion: Array.from(picture.quaternion),
+      model: Array.from(picture.model),
+      left: Array.from(picture.views.left),
+      right: Array.from(picture.views.right),
+      leftLens: Array.from(picture.projections.left),
+      rightLens: Array.from(picture.projections.right),
+    }),
+    /** "drawn", "lost" for the moment, or "none". */
+    graphics: () => {
+      if (!picture.gl) return "none";
+      return picture.lost ? "lost" : "drawn";
+    },
     status: () => shown.status,
     truth: () => shown.truth,
     lines: () => [...terminal.latest],
   };
   const properties = Object.entries(now).map(([name, get]) => [name, { get, enumerable: true }]);
   window.vrduino = Object.freeze(Object.defineProperties({
-    /** The orientation at a moment of the device's time between samples of the last seconds, or null. */
+    /** The orientation at a moment of the stream's time in the last seconds, or null. */
     at: (time) => samples.at(time),
   }, Object.fromEntries(properties)));
 }

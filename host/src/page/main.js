@@ -65,7 +65,11 @@ export const intake = {
 const stream = new Stream(intake);
 const serial = new SerialBoard(intake);
 let source = stream;
-const send = (text) => source.send(text);
+
+function send(text) {
+  if (shown.status.kind === "replay") intake.line("error: not sent: a recording takes no commands");
+  else source.send(text);
+}
 
 async function openSerial() {
   try {

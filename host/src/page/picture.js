@@ -27,6 +27,7 @@ export class Picture {
     this.viewer = { turnedAround: false, ipd: 64, neck: 150, head: 100, position: EYES };
     this.neckOn = true;
     this.dark = true;
+    this.quaternion = new Float64Array([1, 0, 0, 0]);
     this.model = view.matrix();
     this.views = { left: view.matrix(), right: view.matrix() };
     this.camera = view.matrix();
@@ -72,11 +73,16 @@ export class Picture {
 
   /** The matrices of this moment, whether they are drawn or not. */
   turn(q) {
+    this.quaternion.set(q);
     view.rotation(this.model, q);
-    const { viewer } = this;
-    const worn = this.neckOn ? viewer : { ...viewer, neck: 0, head: 0 };
+    const worn = this.worn();
     view.viewOfEye(this.views.left, worn, q, view.LEFT);
     view.viewOfEye(this.views.right, worn, q, view.RIGHT);
+  }
+
+  /** The viewer, whose neck can be left out. */
+  worn() {
+    return this.neckOn ? this.viewer : { ...this.viewer, neck: 0, head: 0 };
   }
 
   draw(q, orbit) {

@@ -1,5 +1,7 @@
 // The last samples, in arrays that are as long from the start as they will ever be.
 
+import { unit } from "./view.js";
+
 /** Bits of a sample's flags; 0 to 7 are the frame's status (docs/wire-format.md). */
 export const REPEATED = 1;
 export const CLIPPED = 1 << 1;
@@ -39,10 +41,7 @@ export class Samples {
     this.components[4 * at + 3] = z;
     this.count += 1;
     this.since = flags & RESTART ? 1 : this.since + 1;
-    this.quaternion[0] = w;
-    this.quaternion[1] = x;
-    this.quaternion[2] = y;
-    this.quaternion[3] = z;
+    unit(this.quaternion, w, x, y, z); // single precision leaves it a little off
     this.latest.time = time;
     this.latest.latency = latency;
     this.latest.sequence = sequence;

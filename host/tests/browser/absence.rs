@@ -1,0 +1,64 @@
+//! Boards that are not there, cables that are pulled, programs that have ended.
+
+use libtest_mimic::Failed;
+
+use super::chromium::Chromium;
+use super::moving::START;
+use super::program::Program;
+
+const NOTICE: &str = "!document.getElementById('notice').hidden";
+const CLEAR: &str = "document.getElementById('notice').hidden";
+
+pub fn cable(chromium: &Chromium) -> Result<(), Failed> {
+    let program = Program::start(&["--emulate"])?;
+    let mut tab = chromium.open(&program.url)?;
+    tab.until("samples arrive", "vrduino.count > 1000", START)?;
+    // What would be gone if the page were loaded again.
+    tab.eval("window.stayed = true")?;
+    for _ in 0..2 {
+        tab.click("#cable")?;
+        tab.until("it shows", &format!("vrduino.status.state === 'lost' && {NOTICE}"), 20)?;
+        let said = "document.getElementById('notice-text').textContent.length > 10";
+        tab.until("it says why", said, 5)?;
+        tab.picture("page-unplugged.png")?;
+        let before = tab.eval("vrduino.count")?;
+        tab.click("#replug")?;
+        let again = format!("vrduino.status.state === 'connected' && {CLEAR} && vrduino.count > {before} + 1000");
+        tab.until("the stream goes on", &again, 60)?;
+        tab.until("at a kilohertz", "vrduino.hertz > 900", 30)?;
+    }
+    tab.until("it was the same page", "window.stayed", 1)?;
+    tab.close()
+}
+
+pub fn no_board(chromium: &Chromium) -> Result<(), Failed> {
+    let program = Program::start(&["--port", "/dev/no-such-port"])?;
+    let mut tab = chromium.open(&program.url)?;
+    tab.until("it says so", &format!("vrduino.status.state === 'waiting' && {NOTICE}"), 30)?;
+    tab.until("nothing has come", "vrduino.count === 0", 1)?;
+    tab.picture("page-no-board.png")?;
+    tab.click("#start-emulated")?;
+    let there = format!("vrduino.status.kind === 'emulated' && vrduino.status.state === 'connected' && {CLEAR}");
+    tab.until("the emulated board is there", &there, START)?;
+    tab.until("it streams", "vrduino.count > 1000", 60)?;
+    tab.click("#leave")?;
+    tab.until("it can be left", &format!("vrduino.status.kind !== 'emulated' && {NOTICE}"), 30)?;
+    tab.close()
+}
+
+pub fn no_program(chromium: &Chromium) -> Result<(), Failed> {
+    let program = Program::start(&["--emulate"])?;
+    let port = program.port().to_owned();
+    let mut tab = chromium.open(&program.url)?;
+    // Its attempts are what the browser reports.
+    tab.expect("ERR_CONNECTION_REFUSED");
+    tab.until("samples arrive", "vrduino.count > 1000", START)?;
+    drop(program);
+    tab.until("it says so", &format!("vrduino.status.state === 'gone' && {NOTICE}"), 20)?;
+    let before = tab.eval("vrduino.count")?;
+    let again = Program::on_port(&port, &["--emulate"])?;
+    let back = format!("vrduino.status.state === 'connected' && {CLEAR} && vrduino.count > {before} + 1000");
+    tab.until("the page goes on", &back, START)?;
+    drop(again);
+    tab.close()
+}

@@ -1,0 +1,90 @@
+//! Ten minutes of a kilohertz, faster than they would come, and what they leave behind.
+
+use data_encoding::BASE64;
+use libtest_mimic::Failed;
+use serde_json::json;
+
+use super::bytes;
+use super::chromium::Chromium;
+use super::program::Program;
+use super::tab::Tab;
+
+const MINUTES: u32 = 10;
+/// Samples of a minute.
+const MINUTE: u32 = 60_000;
+/// What the heap may be larger after the last minute than after the first, in bytes: less than half
+/// a byte a sample.
+const GROWTH: f64 = 250_000.0;
+
+/// Frames by the page's decoder into its intake, a picture for every second of them, as the page
+/// would draw at least; and batches, as the program sends them.
+const FEED: &str = "(async (base64) => {
+    const { Decoder } = await import('/wire.js');
+    const { takeBatch } = await import('/stream.js');
+    const { intake } = await import('/main.js');
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const batch = new DataView(new ArrayBuffer(4 + 8 * 40));
+    batch.setUint16(0, 0x0101, true);
+    batch.setUint16(2, 8, true);
+    let filled = 0;
+    let taken = 0;
+    const decoder = window.decoder ??= new Decoder({ text: intake.line, orientation: (...args) => window.put(...args) });
+    window.put = (w, x, y, z, sequence, micros, status) => {
+        const at = 4 + 40 * filled;
+        batch.setFloat64(at, micros / 1e6, true);
+        [w, x, y, z, 0.3].forEach((value, i) => batch.setFloat32(at + 8 + 4 * i, value, true));
+        batch.setUint32(at + 28, sequence, true);
+        batch.setUint32(at + 32, status | 0x300, true);
+        filled = (filled + 1) % 8;
+        if (filled === 0 && takeBatch(batch.buffer, intake.sample)) taken += 8;
+    };
+    for (let at = 0; at < bytes.length; at += 29000) {
+        decoder.push(bytes.subarray(at, at + 29000));
+        intake.line(`OK second ${at / 29000}`);
+        await new Promise((done) => requestAnimationFrame(done));
+    }
+    return taken;
+})";
+
+pub fn ten_minutes(chromium: &Chromium) -> Result<(), Failed> {
+    // A stream of its own would come in between.
+    let program = Program::start(&["--port", "/dev/no-such-port"])?;
+    let mut tab = chromium.open(&program.url)?;
+    let mut heaps = Vec::new();
+    for minute in 0..MINUTES {
+        let mut stream = Vec::new();
+        (minute * MINUTE..(minute + 1) * MINUTE)
+            .for_each(|number| stream.extend(bytes::frame(number).as_ref()));
+        let taken = tab.eval(&format!("{FEED}('{}')", BASE64.encode(&stream)))?;
+        if taken != json!(MINUTE) {
+            return Err(format!("minute {minute}: {taken} samples were taken").into());
+        }
+        heaps.push(heap(&mut tab)?);
+    }
+    let [count, lost, time] = tab.numbers("[vrduino.count, vrduino.lost, vrduino.time]")?[..] else {
+        return Err("not three numbers".into());
+    };
+    let all = f64::from(MINUTES * MINUTE);
+    if count != all || lost != 0.0 || (time - (all - 1.0) / 1000.0).abs() > 1e-3 {
+        return Err(format!("{count} samples, {lost} lost, until {time} s").into());
+    }
+    println!("heap after each minute, in bytes: {heaps:?}");
+    let growth = heaps[heaps.len() - 1] - heaps[0];
+    if growth > GROWTH {
+        return Err(format!("the heap has grown by {growth} bytes: {heaps:?}").into());
+    }
+    tab.close()
+}
+
+/// Bytes in use, when all that can go has gone.
+fn heap(tab: &mut Tab) -> Result<f64, Failed> {
+    // What DevTools keeps of a call's text is not the page's.
+    tab.call("Runtime.discardConsoleEntries", &json!({}))?;
+    for _ in 0..2 {
+        tab.call("HeapProfiler.collectGarbage", &json!({}))?;
+    }
+    let usage = tab.call("Runtime.getHeapUsage", &json!({}))?;
+    usage["usedSize"]
+        .as_f64()
+        .ok_or_else(|| "no size of the heap".into())
+}

@@ -1,0 +1,103 @@
+//! Web Serial, with a port that is none: the browser has no board to offer here.
+
+use data_encoding::BASE64;
+use libtest_mimic::Failed;
+
+use super::bytes;
+use super::chromium::Chromium;
+use super::program::Program;
+use super::tab::Size;
+
+/// Frames that the port has to give.
+const FRAMES: u32 = 20_000;
+
+/// Takes the place of the browser's own `navigator.serial`: a port that gives twenty milliseconds of
+/// frames at a time, cut anywhere, and answers a few lines as the board does.
+const MOCK: &str = "(() => {
+    const frames = Uint8Array.from(atob('FRAMES'), (letter) => letter.charCodeAt(0));
+    const listeners = {};
+    const mock = { at: 0, written: '', opened: 0, plugged: true };
+    const answers = {
+        ':help': 'OK verbs: help version', ':stream binary': 'OK stream binary every 1',
+        ':estimator': 'OK estimator notes', ':get tilt-time': 'OK tilt-time 4.0000 s',
+        ':get notes-alpha': 'OK notes-alpha 0.9900',
+    };
+    const port = {
+        async open({ baudRate }) {
+            if (!mock.plugged || mock.timer) throw new DOMException('Failed to open serial port.', 'NetworkError');
+            mock.opened += 1;
+            mock.baudRate = baudRate;
+            let control;
+            port.readable = new ReadableStream({ start: (c) => { control = c; } });
+            port.writable = new WritableStream({ write(chunk) {
+                mock.written += new TextDecoder().decode(chunk);
+                for (let end; (end = mock.written.indexOf('\\n')) >= 0;) {
+                    const answer = answers[mock.written.slice(0, end)];
+                    mock.written = mock.written.slice(end + 1);
+                    if (answer) control.enqueue(new TextEncoder().encode(`${answer}\\n`));
+                }
+            } });
+            mock.timer = setInterval(() => {
+                // After 29 · 20 bytes or so: frames are cut in two.
+                const next = Math.min(frames.length, mock.at + 577);
+                if (next > mock.at) control.enqueue(frames.slice(mock.at, next));
+                mock.at = next;
+            }, 20);
+            mock.unplug = () => {
+                clearInterval(mock.timer);
+                mock.timer = null;
+                mock.plugged = false;
+                control.error(new DOMException('The device has been lost.', 'NetworkError'));
+            };
+        },
+        async close() {
+            clearInterval(mock.timer);
+            mock.timer = null;
+        },
+    };
+    const serial = {
+        requestPort: async () => port,
+        getPorts: async () => (mock.plugged ? [port] : []),
+        addEventListener(name, act) { listeners[name] = act; },
+    };
+    mock.plug = () => { mock.plugged = true; listeners.connect(); };
+    Object.defineProperty(Navigator.prototype, 'serial', { get: () => serial, configurable: true });
+    window.mock = mock;
+})()";
+
+pub fn read(chromium: &Chromium) -> Result<(), Failed> {
+    let program = Program::start(&["--port", "/dev/no-such-port"])?;
+    let mut stream = Vec::new();
+    (0..FRAMES).for_each(|number| stream.extend(bytes::frame(number).as_ref()));
+    let script = MOCK.replace("FRAMES", &BASE64.encode(&stream));
+    let mut tab = chromium.open_as(&program.url, Size::DESK, &script)?;
+    tab.until("it is offered", "vrduino.status.state === 'waiting' && !document.querySelector('#notice .open-serial').hidden", 20)?;
+    tab.click("#notice .open-serial")?;
+    let open = "vrduino.status.kind === 'serial' && vrduino.status.state === 'connected'";
+    tab.until("the port is open", open, 10)?;
+    tab.until("samples arrive", "vrduino.count > 500 && document.getElementById('notice').hidden", 20)?;
+    // A frame is a millisecond and a thousandth of a radian.
+    let [time, w, x, y, z] = tab.numbers("[vrduino.time, ...vrduino.quaternion]")?[..] else {
+        return Err("not five numbers".into());
+    };
+    let (sin, cos) = (time / 2.0).sin_cos();
+    let off = [w - cos, x, y - sin, z].into_iter().fold(0.0, |most: f64, part| most.max(part.abs()));
+    if off > 1e-6 {
+        return Err(format!("at {time} s the page has {w} {x} {y} {z}").into());
+    }
+    let learnt = "vrduino.status.estimator === 'notes' && vrduino.status.settings['tilt-time'] === 4";
+    tab.until("the board was asked", learnt, 10)?;
+    tab.until("nothing was lost", "vrduino.lost === 0 && vrduino.status.malformed === 0", 1)?;
+
+    tab.eval("mock.unplug()")?;
+    let gone = "vrduino.status.state === 'lost' && !document.getElementById('notice').hidden";
+    tab.until("unplugged, it says so", gone, 10)?;
+    let before = tab.eval("vrduino.count")?;
+    tab.eval("mock.plug()")?;
+    let again = format!("vrduino.status.state === 'connected' && vrduino.count > {before} + 300 && mock.opened === 2");
+    tab.until("plugged in, it goes on", &again, 20)?;
+
+    tab.click("#close-serial")?;
+    tab.until("the program has the page again", "vrduino.status.kind !== 'serial' && vrduino.status.state === 'waiting'", 10)?;
+    tab.close()
+}
