@@ -61,7 +61,8 @@ pub fn ten_minutes(chromium: &Chromium) -> Result<(), Failed> {
         }
         heaps.push(heap(&mut tab)?);
     }
-    let [count, lost, time] = tab.numbers("[vrduino.count, vrduino.lost, vrduino.time]")?[..] else {
+    let [count, lost, time] = tab.numbers("[vrduino.count, vrduino.lost, vrduino.time]")?[..]
+    else {
         return Err("not three numbers".into());
     };
     let all = f64::from(MINUTES * MINUTE);
