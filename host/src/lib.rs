@@ -11,15 +11,24 @@
 
 pub mod failure;
 
+pub mod output;
+
 pub mod source;
 
 pub mod stream;
 
 pub mod hub;
 
+pub mod board;
+
+pub mod computer;
+
 pub mod web;
 
 pub mod interrupt;
+
+#[cfg(feature = "tui")]
+pub mod tui;
 
 pub mod cli;
 
