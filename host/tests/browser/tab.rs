@@ -132,7 +132,19 @@ impl Tab {
         }
     }
 
-    /// The same, as numbers.
+    /// Makes `window.given` of a long text, without its being part of a script, which the browser would keep.
+    pub fn give(&mut self, text: &str) -> Result<(), Failed> {
+        let window = self.call("Runtime.evaluate", &json!({"expression": "window"}))?;
+        let params = json!({
+            "objectId": window["result"]["objectId"],
+            "functionDeclaration": "function (text) { this.given = text; }",
+            "arguments": [{"value": text}],
+        });
+        self.call("Runtime.callFunctionOn", &params)?;
+        Ok(())
+    }
+
+    /// The value of an expression, as numbers.
     pub fn numbers(&mut self, expression: &str) -> Result<Vec<f64>, Failed> {
         Ok(serde_json::from_value(self.eval(expression)?)?)
     }
