@@ -104,7 +104,7 @@ export class EmulatedControls {
     byId("emulated").hidden = !emulated;
     if (!emulated) return;
     this.unplugged = state === "lost";
-    write("cable", this.unplugged ? "Plug the cable in" : "Pull the cable");
+    write("cable", this.unplugged ? "Plug it in" : "Pull the cable");
     const choice = byId("motion-choice");
     if (choice.options.length !== motions.length) {
       choice.replaceChildren(...motions.map((name) => new Option(name, name)));

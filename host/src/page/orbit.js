@@ -1,6 +1,6 @@
 // Going round the board: a finger or the mouse drags, the wheel or two fingers go nearer.
 
-const START = { azimuth: 0.5, elevation: 0.36, distance: 300 };
+const START = { azimuth: 0.5, elevation: 0.36, distance: 320 };
 const [NEAREST, FARTHEST] = [150, 900];
 /** Not over the pole, where left and right would change places. */
 const STEEPEST = 1.5;

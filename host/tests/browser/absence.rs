@@ -17,13 +17,19 @@ pub fn cable(chromium: &Chromium) -> Result<(), Failed> {
     tab.eval("window.stayed = true")?;
     for _ in 0..2 {
         tab.click("#cable")?;
-        tab.until("it shows", &format!("vrduino.status.state === 'lost' && {NOTICE}"), 20)?;
+        tab.until(
+            "it shows",
+            &format!("vrduino.status.state === 'lost' && {NOTICE}"),
+            20,
+        )?;
         let said = "document.getElementById('notice-text').textContent.length > 10";
         tab.until("it says why", said, 5)?;
         tab.picture("page-unplugged.png")?;
         let before = tab.eval("vrduino.count")?;
         tab.click("#replug")?;
-        let again = format!("vrduino.status.state === 'connected' && {CLEAR} && vrduino.count > {before} + 1000");
+        let again = format!(
+            "vrduino.status.state === 'connected' && {CLEAR} && vrduino.count > {before} + 1000"
+        );
         tab.until("the stream goes on", &again, 60)?;
         tab.until("at a kilohertz", "vrduino.hertz > 900", 30)?;
     }
@@ -34,15 +40,25 @@ pub fn cable(chromium: &Chromium) -> Result<(), Failed> {
 pub fn no_board(chromium: &Chromium) -> Result<(), Failed> {
     let program = Program::start(&["--port", "/dev/no-such-port"])?;
     let mut tab = chromium.open(&program.url)?;
-    tab.until("it says so", &format!("vrduino.status.state === 'waiting' && {NOTICE}"), 30)?;
+    tab.until(
+        "it says so",
+        &format!("vrduino.status.state === 'waiting' && {NOTICE}"),
+        30,
+    )?;
     tab.until("nothing has come", "vrduino.count === 0", 1)?;
     tab.picture("page-no-board.png")?;
     tab.click("#start-emulated")?;
-    let there = format!("vrduino.status.kind === 'emulated' && vrduino.status.state === 'connected' && {CLEAR}");
+    let there = format!(
+        "vrduino.status.kind === 'emulated' && vrduino.status.state === 'connected' && {CLEAR}"
+    );
     tab.until("the emulated board is there", &there, START)?;
     tab.until("it streams", "vrduino.count > 1000", 60)?;
     tab.click("#leave")?;
-    tab.until("it can be left", &format!("vrduino.status.kind !== 'emulated' && {NOTICE}"), 30)?;
+    tab.until(
+        "it can be left",
+        &format!("vrduino.status.kind !== 'emulated' && {NOTICE}"),
+        30,
+    )?;
     tab.close()
 }
 
@@ -54,10 +70,16 @@ pub fn no_program(chromium: &Chromium) -> Result<(), Failed> {
     tab.expect("ERR_CONNECTION_REFUSED");
     tab.until("samples arrive", "vrduino.count > 1000", START)?;
     drop(program);
-    tab.until("it says so", &format!("vrduino.status.state === 'gone' && {NOTICE}"), 20)?;
+    tab.until(
+        "it says so",
+        &format!("vrduino.status.state === 'gone' && {NOTICE}"),
+        20,
+    )?;
     let before = tab.eval("vrduino.count")?;
     let again = Program::on_port(&port, &["--emulate"])?;
-    let back = format!("vrduino.status.state === 'connected' && {CLEAR} && vrduino.count > {before} + 1000");
+    let back = format!(
+        "vrduino.status.state === 'connected' && {CLEAR} && vrduino.count > {before} + 1000"
+    );
     tab.until("the page goes on", &back, START)?;
     drop(again);
     tab.close()

@@ -1,8 +1,8 @@
 //! Streams made by the library, for what the page decodes itself.
 
+use vrduino::sensor::RawSample;
 use vrduino::wire::frame::{self, Counts};
 use vrduino::wire::{self, Decimals, Provenance, Q30, Stamp, Status, Tag};
-use vrduino::sensor::RawSample;
 
 /// Marsaglia's xorshift with a multiplication: the same numbers with every run.
 pub struct Random(pub u64);

@@ -60,10 +60,13 @@ impl Chromium {
     /// The one that is installed; `CHROMIUM` names another.
     pub fn installed() -> Option<Self> {
         let named = std::env::var_os("CHROMIUM").map(PathBuf::from);
-        let program = named.into_iter().chain(NAMES.map(PathBuf::from)).find(|program| {
-            let version = Command::new(program).arg("--version").output();
-            version.is_ok_and(|output| output.status.success())
-        })?;
+        let program = named
+            .into_iter()
+            .chain(NAMES.map(PathBuf::from))
+            .find(|program| {
+                let version = Command::new(program).arg("--version").output();
+                version.is_ok_and(|output| output.status.success())
+            })?;
         Some(Self {
             program,
             running: OnceLock::new(),

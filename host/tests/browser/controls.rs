@@ -16,37 +16,77 @@ pub fn reach_the_board(chromium: &Chromium) -> Result<(), Failed> {
     tab.until("the board has told its settings", told, START)?;
 
     tab.click("label[for=estimator-notes]")?;
-    tab.until("the board has changed", "vrduino.status.estimator === 'notes'", 20)?;
-    tab.until("its samples say so", &format!("vrduino.flags & {NOTES}"), 20)?;
+    tab.until(
+        "the board has changed",
+        "vrduino.status.estimator === 'notes'",
+        20,
+    )?;
+    tab.until(
+        "its samples say so",
+        &format!("vrduino.flags & {NOTES}"),
+        20,
+    )?;
     let words = "document.getElementById('estimator').textContent.startsWith('course notes')";
     tab.until("the page says so", words, 5)?;
-    tab.until("it shows the answer", "document.getElementById('answer').textContent === 'OK estimator notes'", 5)?;
+    tab.until(
+        "it shows the answer",
+        "document.getElementById('answer').textContent === 'OK estimator notes'",
+        5,
+    )?;
     tab.press("e")?;
-    tab.until("a key takes it back", &format!("vrduino.status.estimator === 'default' && !(vrduino.flags & {NOTES})"), 20)?;
+    tab.until(
+        "a key takes it back",
+        &format!("vrduino.status.estimator === 'default' && !(vrduino.flags & {NOTES})"),
+        20,
+    )?;
 
     // Sliders go by powers of ten: 0.3 is 2.00 s, and 2 is α = 0.99.
     tab.slide("tilt-time", 0.301)?;
-    tab.until("tilt-time has changed", "vrduino.status.settings['tilt-time'] === 2", 20)?;
-    tab.until("it shows the value", "document.getElementById('tilt-time-value').textContent === '2 s'", 5)?;
+    tab.until(
+        "tilt-time has changed",
+        "vrduino.status.settings['tilt-time'] === 2",
+        20,
+    )?;
+    tab.until(
+        "it shows the value",
+        "document.getElementById('tilt-time-value').textContent === '2 s'",
+        5,
+    )?;
     tab.slide("notes-alpha", 2.0)?;
-    tab.until("alpha has changed", "Math.abs(vrduino.status.settings['notes-alpha'] - 0.99) < 1e-3", 20)?;
+    tab.until(
+        "alpha has changed",
+        "Math.abs(vrduino.status.settings['notes-alpha'] - 0.99) < 1e-3",
+        20,
+    )?;
 
     // What the board refuses shows as well.
     tab.press(":")?;
     for key in ["s", "e", "t", " ", "x", "Enter"] {
         tab.press(key)?;
     }
-    tab.until("the board refuses", "document.getElementById('answer').textContent.startsWith('ERR x')", 20)?;
+    tab.until(
+        "the board refuses",
+        "document.getElementById('answer').textContent.startsWith('ERR x')",
+        20,
+    )?;
     // And what is neither key nor line is not sent.
     tab.eval("document.getElementById('typed').value = 'hello'; document.querySelector('#type button').click()")?;
-    tab.until("the page refuses", "vrduino.lines.some((line) => line.startsWith('error: “hello”'))", 5)?;
+    tab.until(
+        "the page refuses",
+        "vrduino.lines.some((line) => line.startsWith('error: “hello”'))",
+        5,
+    )?;
 
     tab.eval("document.activeElement.blur()")?;
     tab.click("#defaults")?;
     let back = "Math.abs(vrduino.status.settings['tilt-time'] - 3) < 1e-3";
     tab.until("all is as before", back, 20)?;
     let before = tab.eval("vrduino.count")?;
-    tab.until("at a kilohertz", &format!("vrduino.count > {before} + 1000 && vrduino.hertz > 900"), 30)?;
+    tab.until(
+        "at a kilohertz",
+        &format!("vrduino.count > {before} + 1000 && vrduino.hertz > 900"),
+        30,
+    )?;
 
     tab.press("?")?;
     tab.until("the help opens", "document.getElementById('help').open", 5)?;
@@ -58,13 +98,19 @@ pub fn reach_the_board(chromium: &Chromium) -> Result<(), Failed> {
 pub fn recenter(chromium: &Chromium) -> Result<(), Failed> {
     let program = Program::start(&["--emulate"])?;
     let mut tab = chromium.open(&program.url)?;
-    tab.until("the head has turned", "vrduino.count > 1000 && Math.abs(vrduino.angles[0]) > 20", START)?;
+    tab.until(
+        "the head has turned",
+        "vrduino.count > 1000 && Math.abs(vrduino.angles[0]) > 20",
+        START,
+    )?;
     // The truth is not turned with it: by how much the page is off it then is by how much it turned.
     let yaw = tab.numbers("[vrduino.angles[0]]")?[0];
     tab.click("button[data-act=recenter]")?;
     let shown = "parseFloat(document.getElementById('truth').textContent) > 10";
     tab.until("ahead has moved", shown, 20)?;
-    let tilt = tab.numbers("[parseFloat(/tilt (.*)°/.exec(document.getElementById('truth').textContent)[1])]")?[0];
+    let tilt = tab.numbers(
+        "[parseFloat(/tilt (.*)°/.exec(document.getElementById('truth').textContent)[1])]",
+    )?[0];
     if tilt > 2.0 {
         return Err(format!("from a yaw of {yaw:.0} deg the tilt is {tilt} deg off").into());
     }

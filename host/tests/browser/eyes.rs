@@ -78,7 +78,11 @@ fn check(tab: &mut Tab, ipd: f64, turned: bool, neck: bool) -> Result<(), Failed
     );
     tab.until("it is switched", &shown, 5)?;
     let frames = tab.eval("vrduino.picture.frames")?;
-    tab.until("it is drawn", &format!("vrduino.picture.frames > {frames} + 1"), 20)?;
+    tab.until(
+        "it is drawn",
+        &format!("vrduino.picture.frames > {frames} + 1"),
+        20,
+    )?;
     let picture = tab.numbers(PICTURE)?;
     let (quaternion, matrices) = picture.split_at(4);
     let head = rotation(quaternion)?;

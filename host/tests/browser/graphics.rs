@@ -20,7 +20,11 @@ pub fn lost_context(chromium: &Chromium) -> Result<(), Failed> {
     let [frames, count] = tab.numbers("[vrduino.picture.frames, vrduino.count]")?[..] else {
         return Err("not two numbers".into());
     };
-    tab.until("samples go on", &format!("vrduino.count > {count} + 500"), 20)?;
+    tab.until(
+        "samples go on",
+        &format!("vrduino.count > {count} + 500"),
+        20,
+    )?;
     tab.eval("loser.restoreContext()")?;
     let drawn = format!("vrduino.graphics === 'drawn' && vrduino.picture.frames > {frames} + 5");
     tab.until("it comes back", &drawn, 20)?;
@@ -38,7 +42,11 @@ pub fn no_webgl(chromium: &Chromium) -> Result<(), Failed> {
             return kind === 'webgl2' ? null : get.call(this, kind, ...rest);
         };";
     let mut tab = chromium.open_as(&program.url, Size::DESK, script)?;
-    tab.until("it says so", "!document.getElementById('no-webgl').hidden", 10)?;
+    tab.until(
+        "it says so",
+        "!document.getElementById('no-webgl').hidden",
+        10,
+    )?;
     tab.until("samples arrive", "vrduino.count > 1000", START)?;
     let shown = "/^−?\\d+\\.\\d$/.test(document.getElementById('yaw').textContent)";
     tab.until("there are numbers", shown, 10)?;
@@ -52,15 +60,23 @@ pub fn phone(chromium: &Chromium) -> Result<(), Failed> {
     let program = Program::start(&["--emulate"])?;
     let mut tab = chromium.open_as(&program.url, Size::PHONE, "")?;
     tab.until("samples arrive", "vrduino.count > 1000", START)?;
-    let fits = "document.documentElement.scrollWidth <= window.innerWidth && window.innerWidth === 390";
+    let fits =
+        "document.documentElement.scrollWidth <= window.innerWidth && window.innerWidth === 390";
     tab.until("nothing is wider than the screen", fits, 5)?;
     tab.picture("page-phone.png")?;
     // A finger goes round the board: the label of ahead is where it leads.
     let place = "document.querySelector('#labels [data-axis=ahead]').style.transform";
     let before = tab.eval(place)?;
-    for (kind, x) in [("touchStart", Some(120)), ("touchMove", Some(220)), ("touchEnd", None)] {
+    for (kind, x) in [
+        ("touchStart", Some(120)),
+        ("touchMove", Some(220)),
+        ("touchEnd", None),
+    ] {
         let points: Vec<_> = x.map(|x| json!({"x": x, "y": 350})).into_iter().collect();
-        tab.call("Input.dispatchTouchEvent", &json!({"type": kind, "touchPoints": points}))?;
+        tab.call(
+            "Input.dispatchTouchEvent",
+            &json!({"type": kind, "touchPoints": points}),
+        )?;
     }
     tab.until("a finger turns it", &format!("{place} !== {before}"), 10)?;
     // As the system has it, until a person says otherwise.

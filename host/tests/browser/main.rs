@@ -33,14 +33,20 @@ const TESTS: [(&str, Test); 14] = [
     ("controls_reach_the_board", controls::reach_the_board),
     ("ahead_is_where_the_board_points", controls::recenter),
     ("a_pulled_cable_shows_and_is_put_back", absence::cable),
-    ("without_a_board_there_is_the_emulated_one", absence::no_board),
+    (
+        "without_a_board_there_is_the_emulated_one",
+        absence::no_board,
+    ),
     ("a_program_that_ended_is_found_again", absence::no_program),
     ("a_lost_context_comes_back", graphics::lost_context),
     ("without_webgl_there_are_numbers", graphics::no_webgl),
     ("a_phone_shows_all_of_it", graphics::phone),
     ("the_page_decodes_as_the_library_does", wire::decodes),
     ("a_board_on_web_serial_is_read", serial::read),
-    ("ten_minutes_at_a_kilohertz_take_no_memory", memory::ten_minutes),
+    (
+        "ten_minutes_at_a_kilohertz_take_no_memory",
+        memory::ten_minutes,
+    ),
 ];
 
 const PICTURES: (&str, Test) = ("pictures_for_the_readme", pictures::for_the_readme);
@@ -55,7 +61,9 @@ fn main() -> ExitCode {
                 let chromium = Arc::clone(&chromium);
                 Trial::test(name, move || test(&chromium))
             };
-            let pictures = trial(PICTURES).with_kind("on demand").with_ignored_flag(true);
+            let pictures = trial(PICTURES)
+                .with_kind("on demand")
+                .with_ignored_flag(true);
             TESTS.map(trial).into_iter().chain([pictures]).collect()
         }
         // Asked for all the same (`--ignored`), they fail: a test that did not run has not passed.

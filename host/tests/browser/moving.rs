@@ -37,7 +37,11 @@ const TOLERANCE: f64 = 2.0;
 pub fn turns(chromium: &Chromium) -> Result<(), Failed> {
     let program = Program::start(&["--emulate", "--motion", "turns"])?;
     let mut tab = chromium.open(&program.url)?;
-    tab.until("samples arrive", "vrduino.count > 1000 && vrduino.truth", START)?;
+    tab.until(
+        "samples arrive",
+        "vrduino.count > 1000 && vrduino.truth",
+        START,
+    )?;
     // The bias is measured first.
     tab.until("the sensor turns", "vrduino.truth.t > 3", 60)?;
     let seen: Vec<[f64; 8]> = serde_json::from_value(tab.eval(WATCH)?)?;
@@ -53,7 +57,11 @@ pub fn turns(chromium: &Chromium) -> Result<(), Failed> {
         farthest = farthest.max(start.angle_to(&truth).to_degrees());
     }
     if seen.len() < 20 || farthest < 60.0 {
-        return Err(format!("{} truths, {farthest:.0} deg: too little to see", seen.len()).into());
+        return Err(format!(
+            "{} truths, {farthest:.0} deg: too little to see",
+            seen.len()
+        )
+        .into());
     }
     // Algorithm 1: what the board is drawn with is the library's matrix.
     let drawn = tab.numbers("[...vrduino.picture.quaternion, ...vrduino.picture.model]")?;
@@ -61,7 +69,8 @@ pub fn turns(chromium: &Chromium) -> Result<(), Failed> {
     let expected = gl_rotate(turn.angle, turn.axis.into_inner())?;
     close_to(&drawn[4..], &expected, 1e-6)?;
     // And what is drawn is the latest, as soon as it rests.
-    let latest = "vrduino.quaternion.every((c, i) => Math.abs(c - vrduino.picture.quaternion[i]) < 0.01)";
+    let latest =
+        "vrduino.quaternion.every((c, i) => Math.abs(c - vrduino.picture.quaternion[i]) < 0.01)";
     tab.until("the picture is up to date", latest, 10)?;
     let bytes = tab.picture("page-board.png")?;
     if bytes < 50_000 {
@@ -82,7 +91,11 @@ pub fn two_pages(chromium: &Chromium) -> Result<(), Failed> {
         let answer = "vrduino.lines.includes('OK decimals 3')";
         tab.until("both see the answer", answer, 20)?;
         let before = tab.eval("vrduino.count")?;
-        tab.until("samples go on", &format!("vrduino.count > {before} + 1000"), 30)?;
+        tab.until(
+            "samples go on",
+            &format!("vrduino.count > {before} + 1000"),
+            30,
+        )?;
     }
     one.close()?;
     other.close()

@@ -25,7 +25,11 @@ pub fn for_the_readme(chromium: &Chromium) -> Result<(), Failed> {
         tab.eval(&format!("document.getElementById('view-{mode}').click()"))?;
         // The charts are full, and the head is turned.
         tab.until("ten seconds have come", "vrduino.count > 10500", START)?;
-        tab.until("the head is turned", "Math.abs(vrduino.angles[0]) > 15 && Math.abs(vrduino.angles[0]) < 35", 60)?;
+        tab.until(
+            "the head is turned",
+            "Math.abs(vrduino.angles[0]) > 15 && Math.abs(vrduino.angles[0]) < 35",
+            60,
+        )?;
         let bytes = tab.picture_in(&folder, name)?;
         if bytes > LARGEST {
             return Err(format!("{name} has {bytes} bytes").into());

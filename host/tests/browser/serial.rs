@@ -75,29 +75,46 @@ pub fn read(chromium: &Chromium) -> Result<(), Failed> {
     tab.click("#notice .open-serial")?;
     let open = "vrduino.status.kind === 'serial' && vrduino.status.state === 'connected'";
     tab.until("the port is open", open, 10)?;
-    tab.until("samples arrive", "vrduino.count > 500 && document.getElementById('notice').hidden", 20)?;
+    tab.until(
+        "samples arrive",
+        "vrduino.count > 500 && document.getElementById('notice').hidden",
+        20,
+    )?;
     // A frame is a millisecond and a thousandth of a radian.
     let [time, w, x, y, z] = tab.numbers("[vrduino.time, ...vrduino.quaternion]")?[..] else {
         return Err("not five numbers".into());
     };
     let (sin, cos) = (time / 2.0).sin_cos();
-    let off = [w - cos, x, y - sin, z].into_iter().fold(0.0, |most: f64, part| most.max(part.abs()));
+    let off = [w - cos, x, y - sin, z]
+        .into_iter()
+        .fold(0.0, |most: f64, part| most.max(part.abs()));
     if off > 1e-6 {
         return Err(format!("at {time} s the page has {w} {x} {y} {z}").into());
     }
-    let learnt = "vrduino.status.estimator === 'notes' && vrduino.status.settings['tilt-time'] === 4";
+    let learnt =
+        "vrduino.status.estimator === 'notes' && vrduino.status.settings['tilt-time'] === 4";
     tab.until("the board was asked", learnt, 10)?;
-    tab.until("nothing was lost", "vrduino.lost === 0 && vrduino.status.malformed === 0", 1)?;
+    tab.until(
+        "nothing was lost",
+        "vrduino.lost === 0 && vrduino.status.malformed === 0",
+        1,
+    )?;
 
     tab.eval("mock.unplug()")?;
     let gone = "vrduino.status.state === 'lost' && !document.getElementById('notice').hidden";
     tab.until("unplugged, it says so", gone, 10)?;
     let before = tab.eval("vrduino.count")?;
     tab.eval("mock.plug()")?;
-    let again = format!("vrduino.status.state === 'connected' && vrduino.count > {before} + 300 && mock.opened === 2");
+    let again = format!(
+        "vrduino.status.state === 'connected' && vrduino.count > {before} + 300 && mock.opened === 2"
+    );
     tab.until("plugged in, it goes on", &again, 20)?;
 
     tab.click("#close-serial")?;
-    tab.until("the program has the page again", "vrduino.status.kind !== 'serial' && vrduino.status.state === 'waiting'", 10)?;
+    tab.until(
+        "the program has the page again",
+        "vrduino.status.kind !== 'serial' && vrduino.status.state === 'waiting'",
+        10,
+    )?;
     tab.close()
 }

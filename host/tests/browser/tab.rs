@@ -62,12 +62,21 @@ impl Tab {
             "width": width, "height": height, "deviceScaleFactor": scale, "mobile": width < 500,
         });
         tab.call("Emulation.setDeviceMetricsOverride", &metrics)?;
-        tab.call("Emulation.setFocusEmulationEnabled", &json!({"enabled": true}))?;
+        tab.call(
+            "Emulation.setFocusEmulationEnabled",
+            &json!({"enabled": true}),
+        )?;
         if width < 500 {
-            tab.call("Emulation.setTouchEmulationEnabled", &json!({"enabled": true}))?;
+            tab.call(
+                "Emulation.setTouchEmulationEnabled",
+                &json!({"enabled": true}),
+            )?;
         }
         tab.theme("dark")?;
-        tab.call("Page.addScriptToEvaluateOnNewDocument", &json!({"source": script}))?;
+        tab.call(
+            "Page.addScriptToEvaluateOnNewDocument",
+            &json!({"source": script}),
+        )?;
         tab.call("Page.navigate", &json!({"url": url}))?;
         tab.until("the page has started", "'vrduino' in window", 60)?;
         Ok(tab)
@@ -153,7 +162,9 @@ impl Tab {
     pub fn until(&mut self, what: &str, expression: &str, seconds: u64) -> Result<(), Failed> {
         let began = Instant::now();
         // A page that is being loaded has nothing yet.
-        let guarded = format!("(() => {{ try {{ return Boolean({expression}); }} catch {{ return false; }} }})()");
+        let guarded = format!(
+            "(() => {{ try {{ return Boolean({expression}); }} catch {{ return false; }} }})()"
+        );
         while self.eval(&guarded)? != true {
             if began.elapsed().as_secs() > seconds {
                 let state = self.eval("document.body.innerText.slice(0, 2000)")?;
@@ -188,7 +199,10 @@ impl Tab {
         let text = if key == "Enter" { "\r" } else { key };
         let down = json!({"type": "keyDown", "key": key, "text": text});
         self.call("Input.dispatchKeyEvent", &down)?;
-        self.call("Input.dispatchKeyEvent", &json!({"type": "keyUp", "key": key}))?;
+        self.call(
+            "Input.dispatchKeyEvent",
+            &json!({"type": "keyUp", "key": key}),
+        )?;
         Ok(())
     }
 

@@ -11,7 +11,8 @@ use super::program::Program;
 use super::tab::Tab;
 
 /// The frame of docs/wire-format.md, a quarter turn to the left.
-const GOLDEN: &str = "00 04 01 50 07 04 87 d6 12 05 cd 3c 41 2d 01 01 01 05 cd 3c 41 2d 01 01 01 03 7c eb 00";
+const GOLDEN: &str =
+    "00 04 01 50 07 04 87 d6 12 05 cd 3c 41 2d 01 01 01 05 cd 3c 41 2d 01 01 01 03 7c eb 00";
 
 /// Its lines.
 const LINES: &str = "QC 0.707 0.000 0.707 0.000\nQC 0.707 0.000 0.707 0.000 7 1234567 *E8D8\n";
@@ -90,7 +91,9 @@ fn by_the_library(bytes: &[u8]) -> (Vec<Value>, Value) {
                     Some(stamp) => [i64::from(stamp.sequence), i64::from(stamp.micros)],
                     None => [-1, -1],
                 };
-                let status = received.status.map_or(-1, |status| i64::from(status.to_byte()));
+                let status = received
+                    .status
+                    .map_or(-1, |status| i64::from(status.to_byte()));
                 json!(["orientation", q.w, q.i, q.j, q.k, sequence, micros, status])
             }
             Event::Counts(_, stamp) => json!(["counts", stamp.sequence, stamp.micros]),
