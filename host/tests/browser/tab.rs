@@ -218,17 +218,17 @@ impl Tab {
     /// What the page looks like, kept in `target/pictures`; returns how many bytes it takes.
     pub fn picture(&mut self, name: &str) -> Result<usize, Failed> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/pictures");
-        self.picture_in(&folder, name)
-    }
-
-    /// The same in another folder.
-    pub fn picture_in(&mut self, folder: &Path, name: &str) -> Result<usize, Failed> {
-        let shot = self.call("Page.captureScreenshot", &json!({"format": "png"}))?;
-        let data = shot["data"].as_str().ok_or("a picture without data")?;
-        let png = BASE64.decode(data.as_bytes())?;
-        std::fs::create_dir_all(folder)?;
+        let png = self.png()?;
+        std::fs::create_dir_all(&folder)?;
         std::fs::write(folder.join(name), &png)?;
         Ok(png.len())
+    }
+
+    /// What the page looks like.
+    pub fn png(&mut self) -> Result<Vec<u8>, Failed> {
+        let shot = self.call("Page.captureScreenshot", &json!({"format": "png"}))?;
+        let data = shot["data"].as_str().ok_or("a picture without data")?;
+        Ok(BASE64.decode(data.as_bytes())?)
     }
 
     /// Leaves the page; fails if anything went wrong while it was open.
