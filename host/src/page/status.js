@@ -52,7 +52,7 @@ export class Words {
     });
     write("rate", flowing ? number(history.hertz, history.hertz < 20 ? 1 : 0) : "–");
     const late = status.latency_ms;
-    write("latency", flowing && late ? `${number(late.p50, 2)} / ${number(late.p99, 2)} ms` : "–");
+    write("latency", flowing && late ? `${number(late.p50, 2)} / ${number(late.p99, 2)}` : "–");
     write("losses-now", number(history.lost, 0), history.lost > 0 ? "warn" : "");
     this.flags(samples.latest.flags, flowing);
     this.losses(status, history);

@@ -3,6 +3,7 @@
 
 use std::io::{self, Write};
 use std::net::TcpStream;
+use std::thread;
 use std::time::{Duration, Instant};
 
 use tungstenite::handshake::server::{create_response, write_response};
@@ -22,6 +23,10 @@ const WAITING: usize = 1024 * 1024;
 
 /// How long a page may take nothing.
 pub const PATIENCE: Duration = Duration::from_secs(5);
+
+/// How long a page may take to answer a good-bye, and how often it is looked whether it has.
+const FAREWELL: Duration = Duration::from_millis(300);
+const LOOK: Duration = Duration::from_millis(10);
 
 /// Why a connection is over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,14 +144,28 @@ impl Socket {
         }
     }
 
-    /// Says good-bye, and why.
+    /// Says good-bye, and why; who does not answer is not waited for long.
     pub fn close(mut self, reason: &'static str) {
         let frame = CloseFrame {
             code: CloseCode::Away,
             reason: reason.into(),
         };
-        // Who does not listen is not waited for.
-        let _ = self.socket.close(Some(frame));
-        let _ = self.socket.flush();
+        let until = Instant::now() + FAREWELL;
+        let mut going = self.went_or_waits(|socket| socket.close(Some(frame)));
+        while going && Instant::now() < until {
+            thread::sleep(LOOK);
+            going = self.went_or_waits(|socket| socket.read().map(|_| ()));
+        }
+    }
+
+    fn went_or_waits(
+        &mut self,
+        act: impl FnOnce(&mut WebSocket<TcpStream>) -> Result<(), Error>,
+    ) -> bool {
+        match act(&mut self.socket) {
+            Ok(()) => true,
+            Err(Error::Io(error)) => http::is_patient(&error),
+            Err(_) => false,
+        }
     }
 }

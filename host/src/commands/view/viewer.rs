@@ -148,8 +148,9 @@ impl<'a> Viewer<'a> {
                 }
                 self.hub.order(Order::Motion(name));
             }
+            Asked::Turn(orientation) if is_emulated => self.hub.order(Order::Turn(orientation)),
             Asked::Unplug(unplug) if is_emulated => self.hub.order(Order::Plug(!unplug)),
-            Asked::Stop | Asked::Motion(_) | Asked::Unplug(_) => {
+            Asked::Stop | Asked::Motion(_) | Asked::Turn(_) | Asked::Unplug(_) => {
                 return Err("error: only the emulated board can do that");
             }
         }
