@@ -23,9 +23,14 @@ pub mod board;
 
 pub mod computer;
 
+pub mod recording;
+
 pub mod web;
 
 pub mod interrupt;
+
+#[cfg(feature = "tui")]
+pub mod tui;
 
 pub mod cli;
 

@@ -1,6 +1,5 @@
 //! Promise: what the calibration finds is what is wrong with the part, the board keeps it, and poor data is refused.
 
-#[allow(dead_code, reason = "each test takes what it needs")]
 mod program;
 
 use program::{Ended, place, vrduino};

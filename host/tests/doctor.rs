@@ -1,6 +1,5 @@
 //! Promise: whatever is wrong between plug and stream, the doctor finds it and says what to do.
 
-#[allow(dead_code, reason = "each test takes what it needs")]
 mod program;
 
 #[cfg(unix)]

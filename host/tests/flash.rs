@@ -5,7 +5,6 @@
 //! boots what a stand-in for `teensy_loader_cli` has been given.
 #![cfg(unix)]
 
-#[allow(dead_code, reason = "each test takes what it needs")]
 mod program;
 
 #[allow(dead_code, reason = "each test takes what it needs")]
@@ -20,7 +19,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 
-use program::{Ended, place, run};
+use program::{Ended, Program, place};
 use pty::Pty;
 use rustix::termios::tcgetattr;
 use vrduino_emulator::board::{Board, Setup};
@@ -55,10 +54,8 @@ impl Bench {
         let path = std::env::var_os("PATH").unwrap_or_default();
         let folders = std::iter::once(self.0.clone()).chain(std::env::split_paths(&path));
         let path = std::env::join_paths(folders).expect("a path");
-        run(Command::new(env!("CARGO_BIN_EXE_vrduino"))
-            .arg("flash")
-            .args(words)
-            .env("PATH", path))
+        let mut command = Command::new(env!("CARGO_BIN_EXE_vrduino"));
+        Program::spawn(command.arg("flash").args(words).env("PATH", path)).end()
     }
 }
 

@@ -1,6 +1,5 @@
 //! Promise: who asks which ports there are is told, and what to do where there is none.
 
-#[allow(dead_code, reason = "each test takes what it needs")]
 mod program;
 
 use program::vrduino;
