@@ -60,6 +60,8 @@ enum Input {
     Wish(Wish),
     /// To take another source.
     Switch(Choice),
+    /// To say how things are.
+    Status(Sender<Arc<Status>>),
     /// That nobody wants it any more.
     End,
 }
@@ -114,9 +116,18 @@ impl Hub {
         subscription
     }
 
-    /// How things are.
+    /// How things were when it was last told.
     pub fn status(&self) -> Arc<Status> {
         Arc::clone(&lock(&self.shared.status))
+    }
+
+    /// How things are at this moment, with all that came until now.
+    pub fn status_now(&self) -> Arc<Status> {
+        let (reply, answer) = mpsc::channel();
+        self.tell(Input::Status(reply));
+        answer
+            .recv_timeout(STATUS)
+            .unwrap_or_else(|_| self.status())
     }
 
     /// Types a key, or several, which the board does not answer.
@@ -226,6 +237,11 @@ impl Worker {
                 Ok(Input::Source(..)) | Err(RecvTimeoutError::Timeout) => {}
                 Ok(Input::Wish(wish)) => self.conversation.wish(wish),
                 Ok(Input::Switch(choice)) => self.switch(choice),
+                Ok(Input::Status(reply)) => {
+                    self.tell_status();
+                    // Who asked may have lost patience.
+                    let _ = reply.send(Arc::new(self.status.clone()));
+                }
                 Ok(Input::End) | Err(RecvTimeoutError::Disconnected) => break,
             }
             self.converse();

@@ -23,6 +23,9 @@ pub mod web;
 
 pub mod interrupt;
 
+#[cfg(feature = "tui")]
+pub mod tui;
+
 pub mod cli;
 
 pub mod commands;

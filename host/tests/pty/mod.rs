@@ -9,6 +9,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
+use rustix::io::{FdFlags, fcntl_setfd};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use vrduino_emulator::board::{Board, Setup};
@@ -30,6 +31,8 @@ impl Pty {
     pub fn open() -> Self {
         let device: OwnedFd =
             openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a pseudo-terminal");
+        // A program that is started meanwhile is not to hold it open.
+        fcntl_setfd(&device, FdFlags::CLOEXEC).expect("not inherited");
         grantpt(&device).expect("granted");
         unlockpt(&device).expect("unlocked");
         let path = ptsname(&device, Vec::new())

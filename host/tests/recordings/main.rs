@@ -8,6 +8,8 @@ mod files;
 #[cfg(unix)]
 mod interrupted;
 
+mod outcome;
+
 #[cfg(feature = "parquet")]
 mod parquet;
 
