@@ -144,7 +144,7 @@ impl Random {
 
     /// A sample with or without a number, a status, a delay and registers.
     pub fn entry(&mut self, time: f64, is_first: bool) -> Entry {
-        if self.bits() % 16 == 0 {
+        if self.bits().is_multiple_of(16) {
             let text = format!("warning: {}", self.bits());
             let voice = if self.flag() {
                 Voice::Board
