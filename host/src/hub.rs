@@ -86,8 +86,19 @@ impl Hub {
     /// knows such things; what it streamed before is asked for again at the end. Without one, nothing is
     /// sent to the board.
     pub fn start(choice: Choice, stream: Option<&'static str>) -> Self {
-        let (inputs, received) = mpsc::channel();
+        Self::with(choice, stream, Arc::new(Shared::default()))
+    }
+
+    /// The same, and everything from its very beginning.
+    pub fn open(choice: Choice, stream: Option<&'static str>, hold: Hold) -> (Self, Subscription) {
         let shared = Arc::new(Shared::default());
+        let (subscription, queue) = Subscription::new(hold);
+        lock(&shared.queues).push(queue);
+        (Self::with(choice, stream, shared), subscription)
+    }
+
+    fn with(choice: Choice, stream: Option<&'static str>, shared: Arc<Shared>) -> Self {
+        let (inputs, received) = mpsc::channel();
         let worker = Worker::new(choice, stream, inputs.clone(), Arc::clone(&shared));
         let thread = thread::spawn(move || worker.run(&received));
         Self {
@@ -251,7 +262,8 @@ impl Worker {
         match event {
             Event::Connected(name) => {
                 self.stream.reconnect();
-                self.conversation.begin();
+                let listens = self.status.kind != Some(source::Kind::Replay);
+                self.conversation.begin(listens);
                 self.status.connected(name);
                 self.tell_status();
             }

@@ -23,6 +23,8 @@ pub mod board;
 
 pub mod computer;
 
+pub mod recording;
+
 pub mod web;
 
 pub mod interrupt;

@@ -19,6 +19,12 @@ pub struct SourceArguments {
     /// A recording of `vrduino record`
     #[arg(long, value_name = "FILE", group = "source")]
     pub replay: Option<PathBuf>,
+    /// The recording is played so many times as fast as it came
+    #[arg(long, value_name = "TIMES", requires = "replay", default_value_t = 1.0, value_parser = speed)]
+    pub speed: f64,
+    /// When the recording is over it begins again
+    #[arg(long, requires = "replay")]
+    pub repeat: bool,
     /// What the emulated board is carried through: head, turns, hand, still, tumble, or the file of a motion; head unless the
     /// command wants another
     #[arg(long, value_name = "MOTION", requires = "emulate")]
@@ -46,7 +52,11 @@ impl SourceArguments {
     /// The same; an emulated board is carried through this unless another motion was named.
     pub fn choice_moved_by(&self, motion: &str) -> Choice {
         if let Some(path) = &self.replay {
-            return Choice::Replay(Replay { path: path.clone() });
+            return Choice::Replay(Replay {
+                path: path.clone(),
+                speed: self.speed,
+                repeats: self.repeat,
+            });
         }
         if self.emulate {
             return Choice::Emulated(Emulation {
@@ -58,5 +68,13 @@ impl SourceArguments {
             });
         }
         Choice::Port(self.port.clone())
+    }
+}
+
+/// How many times as fast as it came a recording is played.
+pub fn speed(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(speed) if (0.01..=1000.0).contains(&speed) => Ok(speed),
+        _ => Err("a number from 0.01 to 1000".into()),
     }
 }
