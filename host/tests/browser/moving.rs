@@ -79,6 +79,25 @@ pub fn turns(chromium: &Chromium) -> Result<(), Failed> {
     tab.close()
 }
 
+pub fn by_hand(chromium: &Chromium) -> Result<(), Failed> {
+    let program = Program::start(&["--emulate", "--motion", "hand"])?;
+    let mut tab = chromium.open(&program.url)?;
+    tab.until(
+        "samples arrive",
+        "vrduino.count > 1000 && vrduino.truth",
+        START,
+    )?;
+    // To the right and down: to the left and upwards is what the board then faces.
+    tab.drag([400.0, 300.0], [500.0, 340.0])?;
+    let turned = "2 * Math.atan2(vrduino.truth.q[2], vrduino.truth.q[0]) > 0.7";
+    tab.until("the sensor has turned", turned, 20)?;
+    let angles = "vrduino.angles[0] > 40 && vrduino.angles[1] > 10";
+    tab.until("so has the board", angles, 10)?;
+    let off = "parseFloat(document.getElementById('truth').textContent) < 2";
+    tab.until("as far", off, 10)?;
+    tab.close()
+}
+
 pub fn two_pages(chromium: &Chromium) -> Result<(), Failed> {
     let program = Program::start(&["--emulate"])?;
     let mut one = chromium.open(&program.url)?;
