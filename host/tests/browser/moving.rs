@@ -12,12 +12,12 @@ use super::program::Program;
 /// The image may have to be built first.
 pub const START: u64 = 300;
 
-/// For some seconds, every truth that comes, with what the page had at that moment.
+/// For eight seconds of the board's, every truth that comes, with what the page had at that moment.
 const WATCH: &str = "(async () => {
     const seen = [];
     let last = null;
-    const end = performance.now() + 9000;
-    while (performance.now() < end) {
+    const end = vrduino.truth.t + 8;
+    while (vrduino.truth.t < end) {
         await new Promise((done) => setTimeout(done, 20));
         const { truth } = vrduino;
         if (!truth || truth === last) continue;
