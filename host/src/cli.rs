@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{calibrate, doctor, flash, list, monitor, record, replay, serve, view};
 use crate::failure::Kind;
-pub use source::SourceArguments;
+pub use source::{SourceArguments, speed};
 
 /// Shows, records and explains what a VRduino head tracker sends.
 ///

@@ -60,6 +60,8 @@ enum Input {
     Wish(Wish),
     /// To take another source.
     Switch(Choice),
+    /// To say how things are.
+    Status(Sender<Arc<Status>>),
     /// That nobody wants it any more.
     End,
 }
@@ -84,8 +86,19 @@ impl Hub {
     /// knows such things; what it streamed before is asked for again at the end. Without one, nothing is
     /// sent to the board.
     pub fn start(choice: Choice, stream: Option<&'static str>) -> Self {
-        let (inputs, received) = mpsc::channel();
+        Self::with(choice, stream, Arc::new(Shared::default()))
+    }
+
+    /// The same, and everything from its very beginning.
+    pub fn open(choice: Choice, stream: Option<&'static str>, hold: Hold) -> (Self, Subscription) {
         let shared = Arc::new(Shared::default());
+        let (subscription, queue) = Subscription::new(hold);
+        lock(&shared.queues).push(queue);
+        (Self::with(choice, stream, shared), subscription)
+    }
+
+    fn with(choice: Choice, stream: Option<&'static str>, shared: Arc<Shared>) -> Self {
+        let (inputs, received) = mpsc::channel();
         let worker = Worker::new(choice, stream, inputs.clone(), Arc::clone(&shared));
         let thread = thread::spawn(move || worker.run(&received));
         Self {
@@ -103,9 +116,18 @@ impl Hub {
         subscription
     }
 
-    /// How things are.
+    /// How things were when it was last told.
     pub fn status(&self) -> Arc<Status> {
         Arc::clone(&lock(&self.shared.status))
+    }
+
+    /// How things are at this moment, with all that came until now.
+    pub fn status_now(&self) -> Arc<Status> {
+        let (reply, answer) = mpsc::channel();
+        self.tell(Input::Status(reply));
+        answer
+            .recv_timeout(STATUS)
+            .unwrap_or_else(|_| self.status())
     }
 
     /// Types a key, or several, which the board does not answer.
@@ -215,6 +237,11 @@ impl Worker {
                 Ok(Input::Source(..)) | Err(RecvTimeoutError::Timeout) => {}
                 Ok(Input::Wish(wish)) => self.conversation.wish(wish),
                 Ok(Input::Switch(choice)) => self.switch(choice),
+                Ok(Input::Status(reply)) => {
+                    self.tell_status();
+                    // Who asked may have lost patience.
+                    let _ = reply.send(Arc::new(self.status.clone()));
+                }
                 Ok(Input::End) | Err(RecvTimeoutError::Disconnected) => break,
             }
             self.converse();
@@ -235,7 +262,8 @@ impl Worker {
         match event {
             Event::Connected(name) => {
                 self.stream.reconnect();
-                self.conversation.begin();
+                let listens = self.status.kind != Some(source::Kind::Replay);
+                self.conversation.begin(listens);
                 self.status.connected(name);
                 self.tell_status();
             }

@@ -11,15 +11,26 @@
 
 pub mod failure;
 
+pub mod output;
+
 pub mod source;
 
 pub mod stream;
 
 pub mod hub;
 
+pub mod board;
+
+pub mod computer;
+
+pub mod recording;
+
 pub mod web;
 
 pub mod interrupt;
+
+#[cfg(feature = "tui")]
+pub mod tui;
 
 pub mod cli;
 

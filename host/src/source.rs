@@ -131,6 +131,19 @@ impl Listener {
         }
     }
 
+    /// An order, if there is one within this time.
+    ///
+    /// # Errors
+    ///
+    /// [`Gone`]: the source ends.
+    pub fn order_within(&self, span: std::time::Duration) -> Result<Option<Order>, Gone> {
+        match self.orders.recv_timeout(span) {
+            Ok(order) => Ok(Some(order)),
+            Err(mpsc::RecvTimeoutError::Timeout) => Ok(None),
+            Err(mpsc::RecvTimeoutError::Disconnected) => Err(Gone),
+        }
+    }
+
     /// Waits so long, or until nobody listens; orders that come meanwhile are for nobody.
     ///
     /// # Errors

@@ -2,6 +2,8 @@
 
 mod clock;
 
+pub mod condition;
+
 mod delay;
 
 mod statistics;

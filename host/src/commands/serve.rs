@@ -1,5 +1,7 @@
 //! `vrduino serve`: the board's lines for the course's pages, as the course's server gives them.
 
+mod frames;
+
 mod keyboard;
 
 mod lines;
@@ -144,17 +146,12 @@ impl<'a> Desk<'a> {
     /// Prints what has come; the result if nothing more will.
     fn listen(&mut self) -> Option<Result<(), Failure>> {
         while let Some(update) = self.updates.next(Duration::ZERO) {
+            let lines = self.lines.of(&update);
+            if self.is_printing && !lines.is_empty() {
+                self.print(&lines);
+            }
             match update {
-                Update::Bytes(bytes) => {
-                    let lines = self.lines.take(&bytes);
-                    if self.is_printing {
-                        self.print(lines);
-                    }
-                }
                 Update::Status(status) => {
-                    if status.state != State::Connected {
-                        self.lines = Lines::from_the_beginning();
-                    }
                     let sentence = status.sentence();
                     if sentence != self.said {
                         self.say(&sentence);
@@ -162,13 +159,13 @@ impl<'a> Desk<'a> {
                     }
                 }
                 Update::Ended(result) => return Some(result),
-                Update::Stream(_) | Update::Truth(_) => {}
+                _ => {}
             }
         }
         None
     }
 
-    fn print(&mut self, lines: Vec<String>) {
+    fn print(&mut self, lines: &[String]) {
         let end = self.keyboard.line_end();
         let text: String = lines.iter().map(|line| format!("{line}{end}")).collect();
         let mut out = io::stdout().lock();

@@ -68,6 +68,8 @@ pub struct Conversation {
     waiting: VecDeque<Question>,
     asked: Option<(Question, Instant)>,
     orders: Vec<Order>,
+    /// One that does not, as a recording, answers nothing but `ERR`: its `OK` was said to another.
+    listens: bool,
     /// What the board streamed before it was asked for something else.
     before: Option<String>,
 }
@@ -81,14 +83,17 @@ impl Conversation {
             asked: None,
             orders: Vec::new(),
             before: None,
+            listens: true,
         }
     }
 
     /// A board is there. What was wanted of it before waits until it is known.
-    pub(super) fn begin(&mut self) {
+    /// One that listens to nobody is not asked who it is.
+    pub(super) fn begin(&mut self, listens: bool) {
         self.asked = None;
         self.before = None;
-        self.board = if self.stream.is_some() {
+        self.listens = listens;
+        self.board = if self.stream.is_some() && listens {
             Acquaintance::New(0)
         } else {
             Acquaintance::Known
@@ -165,6 +170,7 @@ impl Conversation {
     /// A line has come.
     pub(super) fn hear(&mut self, line: &str) {
         let answer = match line.strip_prefix("OK ") {
+            Some(_) if !self.listens => return,
             Some(answer) => Ok(answer.to_owned()),
             None if line.starts_with("ERR ") => Err(line.to_owned()),
             None => return,

@@ -169,3 +169,34 @@ impl Socket {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::net::{TcpListener, TcpStream};
+
+    use tungstenite::Message;
+
+    use super::{Over, Socket, WAITING};
+
+    #[test]
+    fn who_takes_nothing_costs_so_much_and_no_more() {
+        let listener = TcpListener::bind(("127.0.0.1", 0)).unwrap();
+        let _other = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (stream, _) = listener.accept().unwrap();
+        let mut socket = Socket::open(stream, b"", Vec::new()).unwrap();
+        let batch = vec![0; 64 * 1024];
+        // Until the system takes nothing more for it.
+        while socket.is_clear().unwrap() {
+            socket.send(Message::Binary(batch.clone().into())).unwrap();
+        }
+        let mut sent = 0;
+        let over = loop {
+            match socket.send(Message::Binary(batch.clone().into())) {
+                Ok(()) => sent += batch.len(),
+                Err(over) => break over,
+            }
+            assert!(sent <= WAITING, "{sent} bytes wait for it");
+        };
+        assert_eq!(over, Over::TooSlow);
+    }
+}

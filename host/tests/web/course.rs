@@ -121,6 +121,23 @@ fn what_is_typed_reaches_the_board() {
     );
 }
 
+/// Frames are lines for them all the same, and no more than they keep up with.
+#[test]
+fn a_binary_stream_is_made_lines_of() {
+    let mut program = Program::serve(&["--emulate", "--quiet"]);
+    let mut page = serve(program.port);
+    orientations(&mut page, 1);
+    program.type_in(":stream binary\n:decimals 5\n");
+    page.find("frames", |message| {
+        let line = message.to_text().ok()?;
+        (line == "OK decimals 5").then_some(())
+    });
+    for line in orientations(&mut page, 200) {
+        assert!(render(&line).is_some(), "{line}");
+        assert!(line.len() <= 30, "three decimals: {line}");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn it_ends_with_a_good_bye() {

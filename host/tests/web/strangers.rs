@@ -5,7 +5,7 @@ use std::net::{Ipv6Addr, TcpListener, TcpStream};
 
 use vrduino_host::web::page::PARTS;
 
-use crate::client::{dial, exchange, get, open};
+use crate::client::{a_while, dial, exchange, get, open};
 use crate::program::{Program, fails};
 
 /// A port that is not there: nothing is plugged in, whatever is plugged in here.
@@ -206,6 +206,19 @@ fn who_asks_slowly_holds_up_nobody() {
         stream.read_to_end(&mut answer).expect("it ends");
         assert!(answer.is_empty(), "who asks nothing is answered nothing");
     }
+}
+
+#[test]
+fn too_many_are_told_so_and_room_comes_back() {
+    let program = Program::view(&NOBODY);
+    let mut many: Vec<_> = (0..64).map(|_| dial(program.port)).collect();
+    assert_eq!(get(program.port, "/").status, 503);
+    many.truncate(60);
+    let again = (0..100).any(|_| {
+        a_while();
+        get(program.port, "/").status == 200
+    });
+    assert!(again, "room does not come back");
 }
 
 #[test]

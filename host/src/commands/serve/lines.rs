@@ -1,5 +1,9 @@
 //! The board's lines, verbatim, as the course's server takes them from the port.
 
+use super::frames::Frames;
+use crate::hub::{State, Update};
+use crate::stream::Item;
+
 /// Bytes of a line at most; the board's have 160.
 const LONGEST: usize = 1024;
 
@@ -9,6 +13,7 @@ pub struct Lines {
     line: Vec<u8>,
     /// The line that is going on will be no good.
     is_spoilt: bool,
+    frames: Frames,
 }
 
 impl Lines {
@@ -17,20 +22,44 @@ impl Lines {
         Self {
             line: Vec::new(),
             is_spoilt: false,
+            frames: Frames::default(),
         }
     }
 
     /// Of bytes that begin anywhere: what comes before the first newline is half a line.
     pub fn from_anywhere() -> Self {
         Self {
-            line: Vec::new(),
             is_spoilt: true,
+            ..Self::from_the_beginning()
         }
     }
 
-    /// The lines that these bytes complete, without their newlines. What is no text is left out: frames of
-    /// a binary stream, which go from zero to zero, and garbage.
-    pub fn take(&mut self, bytes: &[u8]) -> Vec<String> {
+    /// The lines that this brings, without their newlines.
+    pub fn of(&mut self, update: &Update) -> Vec<String> {
+        match update {
+            Update::Bytes(bytes) => self.take(bytes),
+            Update::Stream(items) => {
+                let samples = items.iter().filter_map(|item| match item {
+                    Item::Sample(sample) => Some(sample),
+                    _ => None,
+                });
+                samples
+                    .filter_map(|sample| self.frames.take(sample))
+                    .collect()
+            }
+            Update::Status(status) => {
+                if status.state != State::Connected {
+                    *self = Self::from_the_beginning();
+                }
+                Vec::new()
+            }
+            Update::Truth(_) | Update::Ended(_) => Vec::new(),
+        }
+    }
+
+    /// The lines that these bytes complete. What is no text is left out: frames, which go from zero to zero,
+    /// and garbage.
+    fn take(&mut self, bytes: &[u8]) -> Vec<String> {
         let mut lines = Vec::new();
         for &byte in bytes {
             match byte {

@@ -9,7 +9,7 @@ use tungstenite::Message;
 use tungstenite::http::{Method, StatusCode};
 
 use super::lines::Lines;
-use crate::hub::{Hold, Hub, State, Subscription, Update};
+use crate::hub::{Hold, Hub, Subscription};
 use crate::web::http::{self, Incoming, Response};
 use crate::web::origin::{self, Origin};
 use crate::web::server::Server;
@@ -104,19 +104,11 @@ impl Reader {
         }
         let mut next = self.updates.next(patience);
         while let Some(update) = next {
-            match update {
-                Update::Bytes(bytes) => {
-                    for line in self.lines.take(&bytes) {
-                        self.socket.send(Message::Text(line.into()))?;
-                    }
-                    if !self.socket.is_clear()? {
-                        break;
-                    }
-                }
-                Update::Status(status) if status.state != State::Connected => {
-                    self.lines = Lines::from_the_beginning();
-                }
-                _ => {}
+            for line in self.lines.of(&update) {
+                self.socket.send(Message::Text(line.into()))?;
+            }
+            if !self.socket.is_clear()? {
+                break;
             }
             next = self.updates.next(Duration::ZERO);
         }

@@ -1,0 +1,74 @@
+//! A text file, line by line, none of which can fill the memory.
+
+use std::io::{self, BufRead, Read};
+
+/// No line of a recording is as long: the board's have 160 bytes at most, a row some 200.
+pub const LONGEST: usize = 4096;
+
+/// A line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line<'a> {
+    /// Counted from 1.
+    pub number: u64,
+    /// Without its end.
+    pub text: &'a str,
+    /// It has an end. The last line of a file that is cut off has none.
+    pub is_whole: bool,
+}
+
+/// Why there is no line.
+#[derive(Debug)]
+pub enum Trouble {
+    /// The file cannot be read.
+    Io(io::Error),
+    /// The line of this number is too long.
+    TooLong(u64),
+    /// The line of this number is not text.
+    NotText(u64),
+}
+
+/// Reads them.
+#[derive(Debug)]
+pub struct Lines<R> {
+    input: R,
+    bytes: Vec<u8>,
+    number: u64,
+}
+
+impl<R: BufRead> Lines<R> {
+    /// Of this file.
+    pub fn new(input: R) -> Self {
+        Self {
+            input,
+            bytes: Vec::new(),
+            number: 0,
+        }
+    }
+
+    /// The next.
+    pub fn next(&mut self) -> Result<Option<Line<'_>>, Trouble> {
+        self.bytes.clear();
+        let mut input = (&mut self.input).take(LONGEST as u64 + 1);
+        let count = input.read_until(b'\n', &mut self.bytes);
+        if count.map_err(Trouble::Io)? == 0 {
+            return Ok(None);
+        }
+        self.number += 1;
+        let number = self.number;
+        if self.bytes.len() > LONGEST {
+            return Err(Trouble::TooLong(number));
+        }
+        let is_whole = self.bytes.last() == Some(&b'\n');
+        let text = match (str::from_utf8(&self.bytes), is_whole) {
+            (Ok(text), _) => text.trim_end_matches(['\n', '\r']),
+            // It may have been cut within a letter.
+            (Err(_), false) => "",
+            (Err(_), true) => return Err(Trouble::NotText(number)),
+        };
+        Ok(Some(Line {
+            number,
+            text,
+            is_whole,
+        }))
+    }
+}

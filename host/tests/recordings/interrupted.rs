@@ -1,0 +1,186 @@
+//! What happens to a recording that does not end as it was meant to.
+
+use std::fs;
+use std::io;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use vrduino_host::recording::{Entry, Voice};
+
+use crate::fixture::{Scratch, entries, read, samples};
+use crate::program::{Program, vrduino};
+use crate::pty::PluggedIn;
+
+/// Nothing here takes so long, even on a busy machine.
+const LIMIT: Duration = Duration::from_secs(120);
+
+/// The program at work; it ends when this is dropped.
+struct Recorder(Child);
+
+impl Recorder {
+    fn start(words: &[&str]) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_vrduino"));
+        command.arg("record").args(words).stdin(Stdio::null());
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        Self(command.spawn().expect("the program starts"))
+    }
+
+    fn signal(&self, name: &str) {
+        let id = self.0.id().to_string();
+        let sent = Command::new("kill").args([name, &id]).status();
+        assert!(sent.expect("kill runs").success());
+    }
+
+    /// Its exit code.
+    fn end(&mut self) -> Option<i32> {
+        let mut code = None;
+        wait("its end", || match self.0.try_wait().expect("a child") {
+            Some(status) => {
+                code = status.code();
+                true
+            }
+            None => false,
+        });
+        code
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn wait(what: &str, mut is_so: impl FnMut() -> bool) {
+    let began = Instant::now();
+    while !is_so() {
+        assert!(began.elapsed() < LIMIT, "{what} does not come");
+        thread::sleep(Duration::from_millis(20));
+    }
+}
+
+fn lines(file: &Scratch) -> usize {
+    fs::read(&file.0).map_or(0, |bytes| {
+        bytes.iter().filter(|&&byte| byte == b'\n').count()
+    })
+}
+
+#[test]
+fn ctrl_c_brings_it_to_its_end() {
+    let file = Scratch::new("ctrl-c.csv");
+    let mut recorder = Recorder::start(&["--emulate", file.path()]);
+    wait("some samples", || lines(&file) > 500);
+    recorder.signal("-INT");
+    assert_eq!(recorder.end(), Some(0));
+    assert!(samples(&entries(file.path())).len() > 400);
+}
+
+#[test]
+fn a_crash_loses_little_and_the_rest_is_read() {
+    let file = Scratch::new("crash.csv");
+    let mut recorder = Recorder::start(&["--emulate", file.path()]);
+    wait("some samples", || lines(&file) > 500);
+    recorder.signal("-KILL");
+    assert_eq!(recorder.end(), None);
+    let (entries, warning) = read(file.path());
+    let samples = samples(&entries);
+    assert!(samples.len() > 400);
+    let in_order = samples.windows(2).all(|pair| pair[0].time < pair[1].time);
+    assert!(in_order);
+    let warning = warning.expect("it is cut off");
+    assert!(warning.contains("is cut off"), "{warning}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_told() {
+    let words = ["record", "--emulate", "--seconds", "1", "/dev/full"];
+    vrduino(&words)
+        .expect(5)
+        .said("the disk is full; nothing is recorded");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn what_was_written_before_there_was_no_room_can_be_read() {
+    let file = Scratch::new("quota.csv");
+    // 64 kB; as the system does it where a quota is used up.
+    let script = r#"trap '' XFSZ; ulimit -f 128; exec "$0" record --emulate --seconds 20 "$1""#;
+    let mut shell = Command::new("bash");
+    shell.args(["-c", &format!("ulimit -f >/dev/null; {script}")]);
+    shell.args([env!("CARGO_BIN_EXE_vrduino"), file.path()]);
+    let ended = Program::spawn(&mut shell).end();
+    ended.expect(5).said("may not grow any further");
+    let (entries, warning) = read(file.path());
+    let count = samples(&entries).len();
+    assert!(count > 200, "{count}");
+    ended.said(&format!("its {count} samples so far are kept"));
+    assert!(
+        warning
+            .expect("it is cut off")
+            .contains(&format!("its {count} samples"))
+    );
+}
+
+#[test]
+fn a_board_that_goes_and_comes_back_is_one_recording() {
+    let link = Scratch::new("plug");
+    let file = Scratch::new("replugged.csv");
+    let point_to = |path: &str| -> io::Result<()> {
+        let _ = fs::remove_file(&link.0);
+        std::os::unix::fs::symlink(path, &link.0)
+    };
+    let board = PluggedIn::new(Vec::new);
+    point_to(&board.path).expect("a link");
+    let mut recorder = Recorder::start(&["--port", link.path(), file.path()]);
+    wait("some samples", || lines(&file) > 500);
+    drop(board);
+    wait("a note", || {
+        fs::read_to_string(&file.0)
+            .is_ok_and(|text| text.contains("# note") && text.contains("is gone"))
+    });
+    let before = lines(&file);
+    let board = PluggedIn::new(Vec::new);
+    point_to(&board.path).expect("a link");
+    wait("more samples", || lines(&file) > before + 1500);
+    recorder.signal("-INT");
+    assert_eq!(recorder.end(), Some(0));
+    drop(board);
+    let entries = entries(file.path());
+    let notes: Vec<_> = entries
+        .iter()
+        .filter_map(|entry| match entry {
+            Entry::Remark(remark) if remark.voice == Voice::Recorder => Some(remark.text.as_str()),
+            _ => None,
+        })
+        .collect();
+    assert!(
+        notes.iter().any(|note| note.contains("is gone")),
+        "{notes:?}"
+    );
+    assert!(
+        notes.iter().any(|note| note.contains("is there again")),
+        "{notes:?}"
+    );
+    let samples = samples(&entries);
+    // The second time begins with the lines that a board sends after power-on, then come the frames.
+    let firsts = samples.iter().filter(|sample| sample.is_first).count();
+    assert!((2..=3).contains(&firsts), "{firsts}");
+    assert!(samples.last().expect("one").sequence.is_some());
+    for pair in samples.windows(2).filter(|pair| !pair[1].is_first) {
+        let next = pair[0].sequence.map(|number| number.wrapping_add(1));
+        assert_eq!(pair[1].sequence, next);
+    }
+}
+
+#[test]
+fn without_a_board_nothing_is_left_behind() {
+    let file = Scratch::new("nobody.csv");
+    let mut recorder = Recorder::start(&["--port", "/dev/no-such-port", file.path()]);
+    wait("the file", || file.0.exists());
+    recorder.signal("-INT");
+    assert_eq!(recorder.end(), Some(3));
+    assert!(!file.0.exists());
+}
