@@ -82,7 +82,7 @@ fn a_board_that_sends_no_orientation_is_told_from_none() {
     let arguments = ["monitor", "--emulate", "--seconds", "0.05"];
     let ended = Program::start(&arguments).end();
     assert_eq!(ended.code, Some(4), "{ended:?}");
-    assert!(ended.err.contains("no orientation"), "{ended:?}");
+    assert!(ended.err.contains("emulated board sends"), "{ended:?}");
 }
 
 #[test]
