@@ -86,7 +86,7 @@ export class BoardControls {
 
   /** The board's answers are shown where its controls are. */
   answer(line) {
-    if (!/^(OK|ERR) /.test(line)) return;
+    if (!/^(OK|ERR|error:) /.test(line)) return;
     write("answer", line, line.startsWith("OK") ? "good" : "bad");
   }
 }
