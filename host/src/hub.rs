@@ -111,8 +111,16 @@ impl Hub {
     /// What comes from now on.
     pub fn subscribe(&self, hold: Hold) -> Subscription {
         let (subscription, queue) = Subscription::new(hold);
-        queue.push(Update::Status(self.status()));
-        lock(&self.shared.queues).push(queue);
+        // Nobody is told anything meanwhile, so that nothing falls between.
+        let mut queues = lock(&self.shared.queues);
+        let status = self.status();
+        queue.push(Update::Status(Arc::clone(&status)));
+        if status.state == State::Ended {
+            let result = status.trouble.clone().map_or(Ok(()), Err);
+            queue.push(Update::Ended(result));
+        }
+        queues.push(queue);
+        drop(queues);
         subscription
     }
 
@@ -323,7 +331,10 @@ impl Worker {
         self.conversation.end();
         self.status = Status::of(&choice);
         self.stream = Stream::new();
-        self.source = listen(choice, self.number, self.inputs.clone());
+        let next = listen(choice, self.number, self.inputs.clone());
+        let before = std::mem::replace(&mut self.source, next);
+        // It may have to end something first, as the building of an image.
+        thread::spawn(move || drop(before));
         self.tell_status();
     }
 

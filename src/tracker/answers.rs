@@ -137,6 +137,8 @@ impl<M: Multiply> Tracker<M> {
     }
 
     /// What turns the magnetometer's counts, as they are streamed, into a field.
+    #[cold]
+    #[inline(never)]
     fn adjustment_state(&self) -> Line {
         match self.compass.adjustment() {
             Some(adjustment) => {

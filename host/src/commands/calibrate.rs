@@ -10,6 +10,8 @@ mod picture;
 
 mod procedure;
 
+mod progress;
+
 mod report;
 
 use std::fs;
@@ -121,7 +123,7 @@ fn adjustment(board: &Acquaintance) -> Result<Option<SensitivityAdjustment>, Fai
 
 fn draw(procedure: &Procedure, arguments: &Arguments, output: &mut Output) -> Result<(), Failure> {
     let path = &arguments.picture;
-    let map = guide::map(procedure);
+    let map = Map::so_far(procedure);
     let seen = 100.0 * (1.0 - map.missing().len() as f64 / Map::DIRECTIONS as f64);
     let title = format!("{seen:.0} % of all directions seen");
     fs::write(path, picture::svg(&map, &title)).map_err(|error| unwritten(path, &error))?;

@@ -24,11 +24,11 @@ use figure::Figure;
 
 const EXAMPLES: &str = "\
 Examples:
-  vrduino plot desk.csv                            into desk.svg
-  vrduino plot desk.csv -o desk.png                2400 by 1600 pixels
+  vrduino plot desk.csv               into desk.svg
+  vrduino plot desk.csv -o desk.png   2400 by 1600 pixels
 
-Yaw is unwrapped: it goes on beyond 180 degrees. Gaps are shaded; a line marks where the board or the connection
-began anew.";
+Yaw is unwrapped: it goes on beyond 180 degrees. Gaps are shaded; a line marks where the board \
+or the connection began anew.";
 
 /// What is asked for.
 #[derive(Clone, Debug, Args)]

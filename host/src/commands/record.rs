@@ -23,11 +23,11 @@ use target::Target;
 
 const EXAMPLES: &str = "\
 Examples:
-  vrduino record                                   until Ctrl-C, into a file with the time in its name
-  vrduino record --seconds 60 desk.csv             a minute
-  vrduino record --counts --emulate head.csv       the emulated board, with what its sensor's registers held
-  vrduino plot desk.csv                            a picture of it
-  vrduino view --replay desk.csv                   see it again
+  vrduino record                               until Ctrl-C; the file is named by the time
+  vrduino record --seconds 60 desk.csv         a minute
+  vrduino record --counts --emulate head.csv   the emulated board, with its sensor's registers
+  vrduino plot desk.csv                        a picture of it
+  vrduino view --replay desk.csv               see it again
 
 What is recorded is on the disk within a second. docs/recordings.md tells what stands in the file.";
 

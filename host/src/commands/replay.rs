@@ -16,10 +16,10 @@ use server::Server;
 
 const EXAMPLES: &str = "\
 Examples:
-  vrduino replay desk.csv                          its lines, as they came
-  vrduino replay desk.csv --speed 10 --repeat      ten times as fast, without end
+  vrduino replay desk.csv                       its lines, as they came
+  vrduino replay desk.csv --speed 10 --repeat   ten times as fast, without end
   vrduino replay desk.csv --stream binary --tcp 5000
-                                                   then, elsewhere: vrduino monitor --port tcp:127.0.0.1:5000
+  vrduino monitor --port tcp:127.0.0.1:5000     elsewhere: what that serves
 
 To see it, `vrduino view --replay desk.csv`; every command that reads a board can read a recording so.";
 

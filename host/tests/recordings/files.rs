@@ -49,7 +49,7 @@ fn anything_comes_back_as_it_was() {
     let mut random = Random(1);
     let mut entries: Vec<Entry> = Vec::new();
     for round in 0..3000 {
-        let is_first = entries.is_empty() || random.bits() % 256 == 0;
+        let is_first = entries.is_empty() || random.bits().is_multiple_of(256);
         entries.push(random.entry(f64::from(round) * 0.012_345_678, is_first));
     }
     // The first row begins a segment whatever is said of it.

@@ -12,7 +12,7 @@ use vrduino::wire::frame::Counts;
 use vrduino_host::recording::{Entry, Head, Reader, Remark, Row, Voice, Writer};
 use vrduino_host::stream::Sample;
 
-use crate::program::{place, vrduino};
+use crate::program::vrduino;
 
 /// A file that is gone after the test.
 pub struct Scratch(pub PathBuf);
@@ -20,8 +20,9 @@ pub struct Scratch(pub PathBuf);
 impl Scratch {
     pub fn new(name: &str) -> Self {
         let (stem, ending) = name.split_once('.').unwrap_or((name, ""));
-        let path = place(&format!("recordings-{stem}"));
-        Self(path.with_extension(ending))
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        let id = std::process::id();
+        Self(folder.join(format!("recordings-{stem}-{id}.{ending}")))
     }
 
     pub fn with(name: &str, content: impl AsRef<[u8]>) -> Self {
@@ -143,7 +144,7 @@ impl Random {
 
     /// A sample with or without a number, a status, a delay and registers.
     pub fn entry(&mut self, time: f64, is_first: bool) -> Entry {
-        if self.bits() % 16 == 0 {
+        if self.bits().is_multiple_of(16) {
             let text = format!("warning: {}", self.bits());
             let voice = if self.flag() {
                 Voice::Board

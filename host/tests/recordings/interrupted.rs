@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io;
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -14,44 +14,6 @@ use crate::pty::PluggedIn;
 
 /// Nothing here takes so long, even on a busy machine.
 const LIMIT: Duration = Duration::from_secs(120);
-
-/// The program at work; it ends when this is dropped.
-struct Recorder(Child);
-
-impl Recorder {
-    fn start(words: &[&str]) -> Self {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_vrduino"));
-        command.arg("record").args(words).stdin(Stdio::null());
-        command.stdout(Stdio::null()).stderr(Stdio::null());
-        Self(command.spawn().expect("the program starts"))
-    }
-
-    fn signal(&self, name: &str) {
-        let id = self.0.id().to_string();
-        let sent = Command::new("kill").args([name, &id]).status();
-        assert!(sent.expect("kill runs").success());
-    }
-
-    /// Its exit code.
-    fn end(&mut self) -> Option<i32> {
-        let mut code = None;
-        wait("its end", || match self.0.try_wait().expect("a child") {
-            Some(status) => {
-                code = status.code();
-                true
-            }
-            None => false,
-        });
-        code
-    }
-}
-
-impl Drop for Recorder {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
 
 fn wait(what: &str, mut is_so: impl FnMut() -> bool) {
     let began = Instant::now();
@@ -70,20 +32,20 @@ fn lines(file: &Scratch) -> usize {
 #[test]
 fn ctrl_c_brings_it_to_its_end() {
     let file = Scratch::new("ctrl-c.csv");
-    let mut recorder = Recorder::start(&["--emulate", file.path()]);
+    let recorder = Program::start(&["record", "--emulate", file.path()]);
     wait("some samples", || lines(&file) > 500);
-    recorder.signal("-INT");
-    assert_eq!(recorder.end(), Some(0));
+    recorder.interrupt();
+    assert_eq!(recorder.end().code, Some(0));
     assert!(samples(&entries(file.path())).len() > 400);
 }
 
 #[test]
 fn a_crash_loses_little_and_the_rest_is_read() {
     let file = Scratch::new("crash.csv");
-    let mut recorder = Recorder::start(&["--emulate", file.path()]);
+    let recorder = Program::start(&["record", "--emulate", file.path()]);
     wait("some samples", || lines(&file) > 500);
-    recorder.signal("-KILL");
-    assert_eq!(recorder.end(), None);
+    // It is killed.
+    drop(recorder);
     let (entries, warning) = read(file.path());
     let samples = samples(&entries);
     assert!(samples.len() > 400);
@@ -109,14 +71,16 @@ fn what_was_written_before_there_was_no_room_can_be_read() {
     // 64 kB; as the system does it where a quota is used up.
     let script = r#"trap '' XFSZ; ulimit -f 128; exec "$0" record --emulate --seconds 20 "$1""#;
     let mut shell = Command::new("bash");
-    shell.args(["-c", &format!("ulimit -f >/dev/null; {script}")]);
-    shell.args([env!("CARGO_BIN_EXE_vrduino"), file.path()]);
-    let ended = Program::spawn(&mut shell).end();
-    ended.expect(5).said("may not grow any further");
+    shell.args(["-c", script, env!("CARGO_BIN_EXE_vrduino"), file.path()]);
+    let ended = shell.output().expect("a shell");
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert_eq!(ended.status.code(), Some(5), "{said}");
+    assert!(said.contains("may not grow any further"), "{said}");
     let (entries, warning) = read(file.path());
     let count = samples(&entries).len();
     assert!(count > 200, "{count}");
-    ended.said(&format!("its {count} samples so far are kept"));
+    let kept = format!("its {count} samples so far are kept");
+    assert!(said.contains(&kept), "{said}");
     assert!(
         warning
             .expect("it is cut off")
@@ -134,7 +98,7 @@ fn a_board_that_goes_and_comes_back_is_one_recording() {
     };
     let board = PluggedIn::new(Vec::new);
     point_to(&board.path).expect("a link");
-    let mut recorder = Recorder::start(&["--port", link.path(), file.path()]);
+    let recorder = Program::start(&["record", "--port", link.path(), file.path()]);
     wait("some samples", || lines(&file) > 500);
     drop(board);
     wait("a note", || {
@@ -145,8 +109,8 @@ fn a_board_that_goes_and_comes_back_is_one_recording() {
     let board = PluggedIn::new(Vec::new);
     point_to(&board.path).expect("a link");
     wait("more samples", || lines(&file) > before + 1500);
-    recorder.signal("-INT");
-    assert_eq!(recorder.end(), Some(0));
+    recorder.interrupt();
+    assert_eq!(recorder.end().code, Some(0));
     drop(board);
     let entries = entries(file.path());
     let notes: Vec<_> = entries
@@ -178,9 +142,9 @@ fn a_board_that_goes_and_comes_back_is_one_recording() {
 #[test]
 fn without_a_board_nothing_is_left_behind() {
     let file = Scratch::new("nobody.csv");
-    let mut recorder = Recorder::start(&["--port", "/dev/no-such-port", file.path()]);
+    let recorder = Program::start(&["record", "--port", "/dev/no-such-port", file.path()]);
     wait("the file", || file.0.exists());
-    recorder.signal("-INT");
-    assert_eq!(recorder.end(), Some(3));
+    recorder.interrupt();
+    assert_eq!(recorder.end().code, Some(3));
     assert!(!file.0.exists());
 }

@@ -32,7 +32,7 @@ fn anything_comes_back_as_it_was() {
     for (count, has_counts) in [(70_000, true), (100, false), (0, true)] {
         let mut all = Vec::new();
         for round in 0..count {
-            let is_first = random.bits() % 4096 == 0;
+            let is_first = random.bits().is_multiple_of(4096);
             all.push(random.entry(f64::from(round) * 1e-3, is_first));
         }
         let head = Head {

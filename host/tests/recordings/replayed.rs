@@ -12,7 +12,7 @@ use vrduino_host::source::{Choice, Replay};
 use vrduino_host::stream::{Item, Sample};
 
 use crate::fixture::{Scratch, entries, row, samples, turned, turns, write};
-use crate::program::{Ended, vrduino};
+use crate::program::vrduino;
 
 /// Nothing here takes so long, even on a busy machine.
 const LIMIT: Duration = Duration::from_secs(120);
@@ -171,7 +171,7 @@ fn other_programs_have_it_as_lines_and_as_frames() {
     let recorded = samples(&entries(turns()));
     for (stream, has_numbers, off) in [("text", false, 2e-3), ("timed", true, 2e-3)] {
         let words = ["replay", turns(), "--speed", "1000", "--stream", stream];
-        let ended: Ended = vrduino(&words);
+        let ended = vrduino(&words);
         ended.expect(0).said("end of the recording");
         let found = orientations(ended.out.as_bytes());
         assert_eq!(found.len(), recorded.len());

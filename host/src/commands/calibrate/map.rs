@@ -2,6 +2,9 @@
 
 use nalgebra::Vector3;
 use vrduino::calibration::coverage::{DIRECTIONS, direction};
+use vrduino::units::MagneticField;
+
+use super::procedure::Procedure;
 
 /// Columns about the board's y axis, from −180° to 180°, and rows above and below the x-z plane.
 const COLUMNS: usize = 48;
@@ -23,6 +26,21 @@ impl Map {
     /// How many directions there are to be seen.
     pub const DIRECTIONS: usize = DIRECTIONS;
 
+    /// As far as it goes: of what the fit corrects, if there is one.
+    pub fn so_far(procedure: &Procedure) -> Self {
+        let fields = procedure.fields();
+        match procedure.magnetometer() {
+            Ok(found) => {
+                let correct = found.calibration();
+                Self::of(fields.iter().map(|&field| {
+                    let field = MagneticField::from_microtesla(field);
+                    correct.corrected(field).microtesla()
+                }))
+            }
+            Err(_) => Self::about_the_middle(fields),
+        }
+    }
+
     /// Of fields that were corrected.
     pub fn of(corrected: impl ExactSizeIterator<Item = Vector3<f32>>) -> Self {
         let every = corrected.len() / MOST + 1;
@@ -34,7 +52,7 @@ impl Map {
     }
 
     /// Of fields as they are read, about the middle of what was seen: until there is a fit.
-    pub fn about_the_middle(fields: &[Vector3<f32>]) -> Self {
+    fn about_the_middle(fields: &[Vector3<f32>]) -> Self {
         let (mut least, mut most) = (
             Vector3::repeat(f32::INFINITY),
             Vector3::repeat(f32::NEG_INFINITY),

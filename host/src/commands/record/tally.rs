@@ -44,6 +44,10 @@ impl Tally {
             0 => "none missing".into(),
             count => format!("{count} missing"),
         };
-        format!("{samples} samples in {:.1} s, {missing}", self.seconds())
+        let several = if *samples == 1 { "" } else { "s" };
+        format!(
+            "{samples} sample{several} in {:.1} s, {missing}",
+            self.seconds()
+        )
     }
 }
