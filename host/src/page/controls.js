@@ -66,9 +66,10 @@ export class BoardControls {
     byId(name).setAttribute("aria-valuetext", text);
   }
 
-  show({ state, estimator, settings = {} }, flags) {
+  show({ kind, state, estimator, settings = {} }, flags) {
     const there = state === "connected";
-    byId("board-controls").disabled = !there;
+    // A recording takes no commands.
+    byId("board-controls").disabled = !there || kind === "replay";
     // The samples say it sooner than the board's answer does.
     const now = flags.known ? (flags.notes ? "notes" : "default") : estimator;
     byId("estimator-default").checked = now === "default";
@@ -86,7 +87,7 @@ export class BoardControls {
 
   /** The board's answers are shown where its controls are. */
   answer(line) {
-    if (!/^(OK|ERR) /.test(line)) return;
+    if (!/^(OK|ERR|error:) /.test(line)) return;
     write("answer", line, line.startsWith("OK") ? "good" : "bad");
   }
 }

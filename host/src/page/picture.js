@@ -39,7 +39,13 @@ export class Picture {
     this.frames = 0;
     this.lost = false;
     this.gl = canvas.getContext("webgl2", { antialias: true, alpha: true, stencil: true });
-    if (this.gl) this.build();
+    try {
+      if (this.gl) this.build();
+    } catch (error) {
+      // A browser whose WebGL2 does not take our shaders has none for us.
+      console.warn(error);
+      this.gl = null;
+    }
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault(); // or it would not come back
       this.lost = true;

@@ -2,7 +2,7 @@
 
 use vrduino::sensor::RawSample;
 use vrduino::wire::frame::{self, Counts};
-use vrduino::wire::{self, Decimals, Provenance, Q30, Stamp, Status, Tag};
+use vrduino::wire::{self, Decimals, LINE_LEN, Provenance, Q30, Stamp, Status, Tag};
 
 /// Marsaglia's xorshift with a multiplication: the same numbers with every run.
 pub struct Random(pub u64);
@@ -92,14 +92,17 @@ fn piece(number: u16, random: &mut Random, bytes: &mut Vec<u8>) {
     let parts = [(); 4].map(|()| random.signed());
     let length = parts.iter().map(|part| part * part).sum::<f64>().sqrt();
     let q = Q30(parts.map(|part| bits(part / length)));
+    // Most follow each other; some are the farthest ahead, some the nearest back, some the same.
+    let ahead = [0, 0x7FFE, 0x7FFF, 0xFFFE, 0xFFFF][random.below(5)];
+    let leaps = random.below(10) == 0;
     let stamp = Stamp {
-        sequence: number,
+        sequence: number.wrapping_add(if leaps { ahead } else { 0 }),
         micros: random.next() as u32,
     };
     let status = Status::from_byte(random.below(256) as u8);
     let provenance = Provenance { stamp, status };
     let decimals = Decimals::new(3 + random.below(4) as u32).expect("three to six");
-    match random.below(7) {
+    match random.below(9) {
         0 | 1 => bytes.extend(frame::orientation(q, provenance)),
         2 => {
             let counts = Counts {
@@ -116,6 +119,12 @@ fn piece(number: u16, random: &mut Random, bytes: &mut Vec<u8>) {
         3 => bytes.extend(wire::timed(q, stamp, decimals).bytes()),
         4 => bytes.extend(wire::quaternion(Tag::Fused, q, decimals).bytes()),
         5 => bytes.extend(wire::quaternion(Tag::Gyro, q, decimals).bytes()),
-        _ => bytes.extend(format!("OK µ {number}\r\n").bytes()),
+        6 => bytes.extend(format!("OK µ {number}\r\n").bytes()),
+        7 => bytes.extend("\u{feff}tab\tand mark\n".bytes()),
+        // About as long as a line may be.
+        _ => {
+            let length = LINE_LEN - 3 + random.below(6);
+            bytes.extend(std::iter::repeat_n(b'l', length).chain(*b"\n"));
+        }
     }
 }

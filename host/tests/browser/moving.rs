@@ -63,6 +63,8 @@ pub fn turns(chromium: &Chromium) -> Result<(), Failed> {
         )
         .into());
     }
+    let turned = "Math.abs(vrduino.picture.quaternion[0]) < 0.9";
+    tab.until("the board is turned", turned, 20)?;
     // Algorithm 1: what the board is drawn with is the library's matrix.
     let drawn = tab.numbers("[...vrduino.picture.quaternion, ...vrduino.picture.model]")?;
     let turn = axis_angle(rotation(&drawn[..4])?);
