@@ -109,11 +109,9 @@ fn run(text: &mut String) -> Result<(), Box<dyn Error>> {
         return Err("every calibration was refused: there is nothing to keep".into());
     }
     writeln!(text, "type this to the board to use and keep it:")?;
-    for (number, piece) in bytes.chunks(24).enumerate() {
-        let digits: String = piece.iter().map(|byte| format!("{byte:02x}")).collect();
-        writeln!(text, ":keep {} {digits}", 24 * number)?;
+    for line in record.lines() {
+        writeln!(text, "{line}")?;
     }
-    writeln!(text, ":keep done")?;
     let title = format!("Where the field came from: {name}");
     let look = Look {
         scales: [Scale::Circle, Scale::Even],

@@ -95,3 +95,25 @@ fn counts_that_no_measurement_has_are_warned_of_too() {
     assert!(lines[1].starts_with("Field: magnetometer counts beyond"));
     assert_eq!(lines.len(), 2);
 }
+
+#[test]
+fn what_adjusts_the_streamed_counts_can_be_asked_for() {
+    for (asa, answer) in [
+        (Some([128, 192, 64]), "OK compass adjustment 128 192 64\n"),
+        (
+            None,
+            "OK compass adjustment none, there is no magnetometer\n",
+        ),
+    ] {
+        let mut tracker = Tracker::new(RANGES);
+        tracker.set_magnetometer(asa.map(SensitivityAdjustment::from_fuse_rom));
+        let mut parser = Parser::new();
+        let mut commands = b":compass adjustment\n"
+            .iter()
+            .filter_map(|&b| parser.push(b));
+        let command = commands.next().expect("a line with a meaning");
+        let mut lines = Vec::new();
+        tracker.command(command, &mut |line| lines.push(line.to_string()));
+        assert_eq!(lines, [answer]);
+    }
+}

@@ -11,11 +11,17 @@
 
 pub mod failure;
 
+pub mod output;
+
 pub mod source;
 
 pub mod stream;
 
 pub mod hub;
+
+pub mod board;
+
+pub mod computer;
 
 pub mod recording;
 

@@ -6,7 +6,7 @@ mod program;
 
 mod pty;
 
-use program::{Ended, Program};
+use program::Program;
 use serde_json::Value;
 
 #[test]
@@ -23,10 +23,9 @@ fn the_emulated_board_streams_soundly() {
         assert!(line.contains(words), "no {words} in {line}");
     }
     program.interrupt();
-    let Ended { code, said, .. } = program.end();
-    assert_eq!(code, Some(0), "{said:#?}");
-    let at = said.iter().position(|line| line.starts_with("samples "));
-    let summary = said[at.expect("a summary")..].join("\n");
+    let ended = program.end();
+    let out = &ended.expect(0).out;
+    let summary = &out[out.find("\nsamples ").expect("a summary")..];
     assert!(
         summary.contains("verdict     the stream is sound"),
         "{summary}"
@@ -53,7 +52,7 @@ fn what_it_says_for_programs_is_json() {
     program.interrupt();
     let ended = program.end();
     assert_eq!(ended.code, Some(0), "{ended:?}");
-    let summary = object(ended.said.last().expect("a summary"));
+    let summary = object(ended.out.lines().last().expect("a summary"));
     assert_eq!(summary["event"], "summary");
     assert_eq!(summary["sound"], true, "{summary}");
     assert!(summary["samples"].as_u64() > Some(1000), "{summary}");
@@ -65,10 +64,10 @@ fn without_a_board_it_waits_and_says_what_to_do() {
     let ended = Program::start(&arguments).end();
     assert_eq!(ended.code, Some(3), "{ended:?}");
     assert!(
-        ended.said[0].starts_with("waiting: no-such-port is not there"),
+        ended.out.starts_with("waiting: no-such-port is not there"),
         "{ended:?}"
     );
-    assert!(ended.complained.contains("vrduino list"), "{ended:?}");
+    assert!(ended.err.contains("vrduino list"), "{ended:?}");
 }
 
 #[test]
@@ -77,7 +76,7 @@ fn a_board_that_sends_no_orientation_is_told_from_none() {
     let arguments = ["monitor", "--emulate", "--seconds", "0.05"];
     let ended = Program::start(&arguments).end();
     assert_eq!(ended.code, Some(4), "{ended:?}");
-    assert!(ended.complained.contains("no orientation"), "{ended:?}");
+    assert!(ended.err.contains("no orientation"), "{ended:?}");
 }
 
 #[test]
@@ -91,10 +90,7 @@ fn times_that_are_none_are_refused() {
         let [option, value] = arguments;
         let ended = Program::start(&["monitor", &format!("{option}={value}")]).end();
         assert_eq!(ended.code, Some(2), "{ended:?}");
-        assert!(
-            ended.complained.contains("give a number of seconds"),
-            "{ended:?}"
-        );
+        assert!(ended.err.contains("give a number of seconds"), "{ended:?}");
     }
 }
 
@@ -119,7 +115,7 @@ fn noise_on_the_cable_is_counted_and_judged() {
     program.interrupt();
     let ended = program.end();
     assert_eq!(ended.code, Some(0), "{ended:?}");
-    let summary = ended.said.join("\n");
+    let summary = ended.out;
     assert!(
         summary.contains("pieces that are no line and no frame"),
         "{summary}"
@@ -140,7 +136,7 @@ fn a_board_that_goes_is_waited_for() {
     program.interrupt();
     let ended = program.end();
     assert_eq!(ended.code, Some(0), "{ended:?}");
-    let said = ended.said.join("\n");
+    let said = ended.out;
     assert!(said.contains("verdict     the board is gone"), "{said}");
 }
 

@@ -61,15 +61,18 @@ impl Seat {
         }
     }
 
-    fn look(&mut self) {
+    /// Whether there was anything.
+    fn look(&mut self) -> bool {
         let mut buffer = [0; 65536];
         match self.user.read(&mut buffer) {
             Ok(count) => self.seen.extend(&buffer[..count]),
             Err(error) if error.kind() == ErrorKind::WouldBlock => {
                 std::thread::sleep(Duration::from_millis(10));
+                return false;
             }
             Err(error) => panic!("{error}"),
         }
+        true
     }
 
     fn has_seen(&self, words: &str) -> bool {
@@ -98,8 +101,9 @@ impl Seat {
             }
             assert!(began.elapsed() < PATIENCE, "it does not end");
         };
-        self.until(BACK);
+        while self.look() {}
         assert!(status.success(), "{status}");
+        assert!(self.has_seen(BACK), "the other screen is left on");
         let modes = tcgetattr(&self.terminal).expect("settings").local_modes;
         assert!(modes.contains(LocalModes::ICANON | LocalModes::ECHO));
     }
@@ -144,6 +148,6 @@ fn with_nothing_plugged_in_enter_starts_the_emulated_board() {
 fn where_no_terminal_is_it_says_so() {
     let ended = Program::start(&["tui", "--emulate"]).end();
     assert_eq!(ended.code, Some(6), "{ended:?}");
-    assert!(ended.complained.contains("vrduino monitor"), "{ended:?}");
-    assert!(ended.said.is_empty(), "{ended:?}");
+    assert!(ended.err.contains("vrduino monitor"), "{ended:?}");
+    assert!(ended.out.is_empty(), "{ended:?}");
 }

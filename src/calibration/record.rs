@@ -19,7 +19,8 @@ use super::ellipsoid::Magnetometer;
 use super::six_positions::Accelerometer;
 use super::{Correction, GyroBias, Rest};
 use crate::units::{Angle, AngularRate, MagneticField, SpecificForce};
-use core::fmt;
+use core::fmt::{self, Write};
+use heapless::String;
 use nalgebra::{Matrix3, Vector3};
 
 /// Bytes of a record.
@@ -79,6 +80,9 @@ const MAGNETOMETER: Part = Part {
 };
 /// No value of any calibration is larger, in any unit used here.
 const ANY: (u8, f32, f32) = (1, -10_000.0, 10_000.0);
+
+/// A line by which a record is handed over.
+pub type KeepLine = String<64>;
 
 /// The gyro's bias with what was noted beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,6 +217,23 @@ impl Record {
         let checksum = crc32(&bytes[..BODY]);
         bytes[BODY..].copy_from_slice(&checksum.to_le_bytes());
         bytes
+    }
+
+    /// What a host types to hand it to a board, line by line without their ends: `:keep AT HEX` for each
+    /// 24 bytes, and `:keep done`.
+    pub fn lines(&self) -> impl Iterator<Item = KeepLine> {
+        const PIECE: usize = 24;
+        let bytes = self.to_bytes();
+        let pieces = (0..LENGTH).step_by(PIECE).map(move |at| {
+            let mut line = KeepLine::new();
+            // 10 characters and two for each byte: there is room.
+            let _ = write!(line, ":keep {at} ");
+            for byte in bytes.iter().skip(at).take(PIECE) {
+                let _ = write!(line, "{byte:02x}");
+            }
+            line
+        });
+        pieces.chain(KeepLine::try_from(":keep done"))
     }
 
     /// What was kept.

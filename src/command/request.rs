@@ -26,6 +26,8 @@ pub enum Request {
     Defaults,
     /// `:compass` asks, `:compass auto`, `:compass on` and `:compass off` choose.
     Compass(Option<UseCompass>),
+    /// `:compass adjustment`: how sensitive each axis of the magnetometer is.
+    CompassAdjustment,
     /// `:calibration`: what is known of the sensor's faults.
     Calibration,
     /// `:keep AT HEX`: some bytes of a [`Record`](crate::calibration::record::Record).
@@ -272,13 +274,14 @@ pub fn parse(line: &str) -> Result<Request, Refusal> {
             Some("notes") => Some(Choice::Notes),
             Some(other) => return refuse(other, Reason::Wanted("default or notes")),
         }),
-        "compass" => Request::Compass(match next() {
-            None => None,
-            Some("auto") => Some(UseCompass::Auto),
-            Some("on") => Some(UseCompass::On),
-            Some("off") => Some(UseCompass::Off),
-            Some(other) => return refuse(other, Reason::Wanted("auto, on or off")),
-        }),
+        "compass" => match next() {
+            None => Request::Compass(None),
+            Some("auto") => Request::Compass(Some(UseCompass::Auto)),
+            Some("on") => Request::Compass(Some(UseCompass::On)),
+            Some("off") => Request::Compass(Some(UseCompass::Off)),
+            Some("adjustment") => Request::CompassAdjustment,
+            Some(other) => return refuse(other, Reason::Wanted("auto, on, off or adjustment")),
+        },
         "calibration" => Request::Calibration,
         "forget" => Request::Forget,
         "keep" => match next() {

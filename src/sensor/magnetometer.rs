@@ -159,6 +159,11 @@ impl SensitivityAdjustment {
         Self(asa)
     }
 
+    /// The same bytes again, x first.
+    pub const fn fuse_rom(self) -> [u8; 3] {
+        self.0
+    }
+
     /// H_adj = H ((ASA − 128) · 0.5 / 128 + 1): from 0.5 to 1.496. Along the magnetometer's axes.
     ///
     /// That is (ASA + 128) / 256, which has no difference to take without a sign, and is exact in

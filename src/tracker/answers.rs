@@ -46,6 +46,7 @@ impl<M: Multiply> Tracker<M> {
                 }
                 self.compass_state()
             }
+            Ok(Request::CompassAdjustment) => self.adjustment_state(),
             Ok(Request::Calibration) => self.calibration.state(),
             Ok(Request::Keep(piece)) => self.calibration.take(&piece),
             Ok(Request::KeepDone) => match self.calibration.finish() {
@@ -132,6 +133,19 @@ impl<M: Multiply> Tracker<M> {
         match self.use_compass {
             UseCompass::Off => wire::text("OK compass off"),
             _ => wire::text(format_args!("OK compass {choice}: {state}")),
+        }
+    }
+
+    /// What turns the magnetometer's counts, as they are streamed, into a field.
+    #[cold]
+    #[inline(never)]
+    fn adjustment_state(&self) -> Line {
+        match self.compass.adjustment() {
+            Some(adjustment) => {
+                let [x, y, z] = adjustment.fuse_rom();
+                wire::text(format_args!("OK compass adjustment {x} {y} {z}"))
+            }
+            None => wire::text("OK compass adjustment none, there is no magnetometer"),
         }
     }
 }

@@ -35,6 +35,11 @@ impl Compass {
         }
     }
 
+    /// How sensitive its axes are; none while there is no magnetometer.
+    pub fn adjustment(&self) -> Option<SensitivityAdjustment> {
+        self.adjustment
+    }
+
     /// A measurement has come. Why it is none, when that begins.
     pub fn update(&mut self, raw: RawField) -> Option<FieldError> {
         self.adjustment?;

@@ -61,6 +61,20 @@ impl Turns {
         Self { start, ..self }
     }
 
+    /// Then stays as it is for `seconds`, besides the pauses.
+    ///
+    /// # Panics
+    ///
+    /// If that is negative or not finite: a mistake in the script.
+    pub fn rest(mut self, seconds: f64) -> Self {
+        assert!(
+            seconds.is_finite() && seconds >= 0.0,
+            "a rest of {seconds} s"
+        );
+        self.end += seconds;
+        self
+    }
+
     /// Then turns by `degrees` about `axis` (body frame, any length), right-handed, in `seconds`.
     ///
     /// # Panics

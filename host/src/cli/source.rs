@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::source::emulated::MOTIONS;
+use crate::source::emulated::{MOTIONS, PartKind};
 use crate::source::{Choice, Emulation, Replay};
 
 /// Which board, or what stands for one. Without any of them it is the one board that is plugged in.
@@ -25,17 +25,32 @@ pub struct SourceArguments {
     /// When the recording is over it begins again
     #[arg(long, requires = "replay")]
     pub repeat: bool,
-    /// What the emulated board is carried through: head, turns, hand, still, or the file of a motion
-    #[arg(long, value_name = "MOTION", requires = "emulate", default_value = MOTIONS[0])]
-    pub motion: String,
+    /// What the emulated board is carried through: head, turns, hand, still, tumble, or the file of a motion; head unless the
+    /// command wants another
+    #[arg(long, value_name = "MOTION", requires = "emulate")]
+    pub motion: Option<String>,
     /// What is flashed on the emulated board, ELF or Intel HEX, in the place of this repository's firmware
     #[arg(long, value_name = "FILE", requires = "emulate")]
     pub image: Option<PathBuf>,
+    /// The emulated sensor
+    #[arg(long, value_name = "KIND", requires = "emulate")]
+    pub part: Option<PartKind>,
+    /// Which of the typical or worst parts, and which noise [default: 1]
+    #[arg(long, value_name = "N", requires = "part")]
+    pub seed: Option<u64>,
+    /// Lets the emulated board run as fast as this computer allows
+    #[arg(long, requires = "emulate", hide = true)]
+    pub unpaced: bool,
 }
 
 impl SourceArguments {
     /// The source they choose.
     pub fn choice(&self) -> Choice {
+        self.choice_moved_by(MOTIONS[0])
+    }
+
+    /// The same; an emulated board is carried through this unless another motion was named.
+    pub fn choice_moved_by(&self, motion: &str) -> Choice {
         if let Some(path) = &self.replay {
             return Choice::Replay(Replay {
                 path: path.clone(),
@@ -46,7 +61,10 @@ impl SourceArguments {
         if self.emulate {
             return Choice::Emulated(Emulation {
                 image: self.image.clone(),
-                motion: self.motion.clone(),
+                motion: self.motion.clone().unwrap_or_else(|| motion.to_owned()),
+                part: self.part.unwrap_or_default(),
+                seed: self.seed.unwrap_or(1),
+                paced: !self.unpaced,
             });
         }
         Choice::Port(self.port.clone())

@@ -1,23 +1,166 @@
-//! `vrduino calibrate`.
+//! `vrduino calibrate`: the board lies still, lies on its faces, is turned; what is found it keeps.
+
+mod guide;
+
+mod keep;
+
+mod map;
+
+mod picture;
+
+mod procedure;
+
+mod progress;
+
+mod report;
+
+use std::fs;
+use std::path::PathBuf;
 
 use clap::Args;
+use vrduino::calibration::record::Record;
+use vrduino::sensor::magnetometer::SensitivityAdjustment;
 
+use crate::board::{self, Acquaintance};
 use crate::cli::SourceArguments;
 use crate::failure::{Failure, Kind};
+use crate::interrupt::Interrupt;
+use crate::output::Output;
+use guide::Guide;
+use map::Map;
+use procedure::Procedure;
+
+/// The motion by which an emulated board is calibrated.
+const MOTION: &str = "tumble";
+
+const EXAMPLES: &str = "\
+Examples:
+  vrduino calibrate                                      the board that is plugged in; asks before it changes anything
+  vrduino calibrate --emulate --part typical --yes       an emulated board with errors of its own, from end to end
+  vrduino calibrate --dry-run board.keep                 the lines that hand the result to a board, into a file
+
+What is refused is left as the board knows it. `:forget`, typed to the board, forgets everything.";
 
 /// What is asked for.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// Where from.
     #[command(flatten)]
     pub source: SourceArguments,
+    /// Most seconds for each of the three parts
+    #[arg(long, value_name = "S", default_value_t = 120.0, value_parser = seconds)]
+    pub seconds: f64,
+    /// Hands the result to the board without asking
+    #[arg(long, conflicts_with = "dry_run")]
+    pub yes: bool,
+    /// Writes the lines that hand the result to a board into this file, and sends nothing
+    #[arg(long, value_name = "FILE")]
+    pub dry_run: Option<PathBuf>,
+    /// Where the picture goes: the directions from which the magnetic field has come
+    #[arg(long, value_name = "FILE", default_value = "coverage.svg")]
+    pub picture: PathBuf,
 }
 
-/// Does it.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (1.0..=3600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("give seconds from 1 to 3600".into()),
+    }
+}
+
+/// Guides through it, says what was found, and hands it to the board.
 ///
 /// # Errors
 ///
-/// What keeps it from being done.
-pub fn run(_arguments: &Arguments) -> Result<(), Failure> {
-    Err(Failure::new(Kind::Computer, "not written yet"))
+/// There is no board, it sends no counts, or a part of the result is refused.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.source.replay.is_some() {
+        return Err(Failure::new(
+            Kind::Stream,
+            "a recording cannot be laid on its faces: give --port or --emulate (`cargo run --example calibrate -- FILE` takes a motion from a file)",
+        ));
+    }
+    let board = board::meet(arguments.source.choice_moved_by(MOTION), "counts")?;
+    let interrupt = Interrupt::listen();
+    let mut output = Output::new();
+    let mut procedure = Procedure::new(adjustment(&board)?);
+    let guide = Guide::new(&board, &interrupt, arguments.seconds);
+    if !guide.lead(&mut procedure, &mut output)? {
+        output.say("stopped: the board is as it was");
+        return Ok(());
+    }
+    let refused = report::tell(&procedure, &mut output);
+    if procedure.has_magnetometer() {
+        draw(&procedure, arguments, &mut output)?;
+    }
+    let record = procedure.record();
+    if record != Record::default() {
+        settle(&board, &record, arguments, &mut output)?;
+    }
+    match refused {
+        None => Ok(()),
+        Some(sentence) => Err(Failure::new(Kind::Stream, sentence)),
+    }
+}
+
+/// By what the magnetometer's counts are adjusted.
+fn adjustment(board: &Acquaintance) -> Result<Option<SensitivityAdjustment>, Failure> {
+    let answer = board.hub.ask(":compass adjustment").map_err(|failure| {
+        let sentence = format!(
+            "{failure}; a program older than this one has to be flashed anew (`vrduino flash`)"
+        );
+        Failure::new(failure.kind, sentence)
+    })?;
+    let mut words = answer.split(' ').skip(2).map(str::parse);
+    match (words.next(), words.next(), words.next()) {
+        (Some(Ok(x)), Some(Ok(y)), Some(Ok(z))) => {
+            Ok(Some(SensitivityAdjustment::from_fuse_rom([x, y, z])))
+        }
+        _ => Ok(None),
+    }
+}
+
+fn draw(procedure: &Procedure, arguments: &Arguments, output: &mut Output) -> Result<(), Failure> {
+    let path = &arguments.picture;
+    let map = Map::so_far(procedure);
+    let seen = 100.0 * (1.0 - map.missing().len() as f64 / Map::DIRECTIONS as f64);
+    let title = format!("{seen:.0} % of all directions seen");
+    fs::write(path, picture::svg(&map, &title)).map_err(|error| unwritten(path, &error))?;
+    output.say(format!("\nthe directions are drawn in {}", path.display()));
+    Ok(())
+}
+
+fn unwritten(path: &std::path::Path, error: &std::io::Error) -> Failure {
+    let path = path.display();
+    let sentence = format!("{path} cannot be written: {error}; name another file");
+    Failure::new(Kind::File, sentence)
+}
+
+/// To the board, or into a file.
+fn settle(
+    board: &Acquaintance,
+    record: &Record,
+    arguments: &Arguments,
+    output: &mut Output,
+) -> Result<(), Failure> {
+    if let Some(path) = &arguments.dry_run {
+        let lines: String = record.lines().map(|line| format!("{line}\n")).collect();
+        fs::write(path, lines).map_err(|error| unwritten(path, &error))?;
+        output.say(format!(
+            "nothing sent; {} has the lines that hand this to a board",
+            path.display()
+        ));
+        return Ok(());
+    }
+    let wanted = arguments.yes
+        || Output::is_terminal() && output.ask("\nLet the board keep what was found?")?;
+    if !wanted {
+        output.say("nothing sent: the board is as it was (--yes lets it keep what was found)");
+        return Ok(());
+    }
+    let known = keep::hand_over(board, record)?;
+    let known = known.strip_prefix("calibration: ").unwrap_or(&known);
+    output.say(format!("the board keeps it: {known}"));
+    Ok(())
 }

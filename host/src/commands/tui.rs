@@ -50,9 +50,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let interrupt = Interrupt::listen();
-    let mut screen = Screen::open()?;
     let hub = Hub::start(arguments.source.choice(), Some("binary"));
     let updates = hub.subscribe(Hold::Newest(AT_ONCE));
+    // Given back before the hub has ended, which may take the source a while.
+    let mut screen = Screen::open()?;
     show(&mut screen.0, &hub, &updates, &interrupt).map_err(|error| lost(&error))
 }
 

@@ -78,6 +78,7 @@ impl Status {
         }
         match (self.state, self.kind) {
             (State::Connected, Some(Kind::Replay)) => format!("{} is played", self.source),
+            (State::Connected, Some(Kind::Emulated)) => "the emulated board is connected".into(),
             (State::Connected, _) => format!("{} is connected", self.source),
             (State::Ended, _) => "the recording is at its end".into(),
             (_, Some(Kind::Emulated)) => "the emulated board starts".into(),

@@ -4,7 +4,7 @@ import { AXIS_LENGTH } from "./board.js";
 
 const BEYOND = AXIS_LENGTH + 5;
 const AXES = { x: [BEYOND, 0, 0], y: [0, BEYOND, 0], z: [0, 0, BEYOND] };
-const AHEAD = [0, -78, -180];
+const AHEAD = [0, -78, -172];
 
 export class Labels {
   constructor(layer) {

@@ -13,6 +13,7 @@ import { NOTES, Samples, STATUS_KNOWN } from "./samples.js";
 import { History } from "./history.js";
 import { Picture } from "./picture.js";
 import { Orbit } from "./orbit.js";
+import { Hand } from "./hand.js";
 import { Labels } from "./labels.js";
 import { Chart } from "./charts.js";
 import { Words } from "./status.js";
@@ -99,7 +100,14 @@ const notice = new Notice({
 const terminal = new Console(byId("lines"), byId("type"), send);
 const picture = new Picture(byId("picture"));
 picture.restored = redraw;
-const orbit = new Orbit(picture.canvas, redraw);
+const hand = new Hand((request) => source.ask(request));
+const orbit = new Orbit(picture.canvas, redraw, (across, down, event) => {
+  const inHand = shown.status.kind === "emulated" && shown.status.motion === "hand";
+  const stereo = picture.mode === "stereo";
+  // The camera of the board view goes round with shift; that of the eyes is the head itself.
+  if (inHand && (stereo || !event.shiftKey)) hand.drag(across, down, picture.right(), shown.truth);
+  return stereo || (inHand && !event.shiftKey);
+});
 const labels = new Labels(byId("labels"));
 const board = new BoardControls(send);
 const emulated = new EmulatedControls((request) => source.ask(request));
@@ -127,6 +135,7 @@ function show(mode) {
   picture.mode = mode;
   document.body.dataset.view = mode;
   byId(`view-${mode}`).checked = true;
+  emulated.show(shown.status);
   redraw();
 }
 
@@ -164,6 +173,7 @@ let wordsAt = -Infinity;
 
 function frame(now) {
   requestAnimationFrame(frame);
+  hand.move();
   if (now - wordsAt >= WORDS_EVERY) {
     wordsAt = now;
     const { flags } = samples.latest;

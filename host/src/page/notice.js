@@ -42,8 +42,9 @@ export class Notice {
     byId("notice").hidden = !over;
     const starting = kind === "emulated" && state === "waiting";
     write("notice-title", starting ? "The emulated board is starting" : TITLES[state] ?? "Nothing to see yet");
-    write("notice-text", message || "");
+    write("notice-text", message ? message[0].toUpperCase() + message.slice(1) : "");
     byId("start-emulated").hidden = !(kind === "none" || kind === "port") || state === "gone";
+    byId("open-port").hidden = !hasSerial() || kind === "emulated";
     byId("replug").hidden = !(kind === "emulated" && state === "lost");
     byId("close-serial").hidden = kind !== "serial";
     const opener = document.querySelector("#panel .open-serial");

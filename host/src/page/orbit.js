@@ -1,6 +1,6 @@
 // Going round the board: a finger or the mouse drags, the wheel or two fingers go nearer.
 
-const START = { azimuth: 0.5, elevation: 0.36, distance: 300 };
+const START = { azimuth: 0.5, elevation: 0.36, distance: 320 };
 const [NEAREST, FARTHEST] = [150, 900];
 /** Not over the pole, where left and right would change places. */
 const STEEPEST = 1.5;
@@ -8,9 +8,13 @@ const STEEPEST = 1.5;
 const SPEED = 0.008;
 
 export class Orbit {
-  /** `changed` is called when the picture must be drawn again. */
-  constructor(canvas, changed) {
+  /**
+   * `changed` is called when the picture must be drawn again, `taken(across, down, event)` with
+   * every drag: whether it was meant for something else.
+   */
+  constructor(canvas, changed, taken) {
     this.changed = changed;
+    this.taken = taken;
     this.fingers = new Map();
     this.eye = new Float64Array(3);
     this.reset();
@@ -45,8 +49,10 @@ export class Orbit {
       this.zoom(apart(before) / Math.max(apart(now), 1));
       return;
     }
-    this.azimuth -= SPEED * (now[0] - before[0]);
-    const elevation = this.elevation + SPEED * (now[1] - before[1]);
+    const [across, down] = [now[0] - before[0], now[1] - before[1]];
+    if (this.taken(across, down, event)) return;
+    this.azimuth -= SPEED * across;
+    const elevation = this.elevation + SPEED * down;
     this.elevation = Math.min(STEEPEST, Math.max(-STEEPEST, elevation));
     this.changed();
   }

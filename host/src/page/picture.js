@@ -59,10 +59,12 @@ export class Picture {
         .map(([name, source]) => [name, new Program(gl, source)]),
     );
     const sheet = new Shapes().quad([[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]], [0, 1, 0]);
+    // On the floor, straight ahead.
+    const pointer = new Shapes().quad([[-9, 0, -128], [9, 0, -128], [0, 0, -152], [0, 0, -152]], [0, 1, 0]);
     this.meshes = Object.fromEntries(
       Object.entries({
         solids: board.solids(), faces: board.faces(), axes: board.axes(),
-        room: room(), signs: signs(), sheet,
+        room: room(), signs: signs(), sheet, pointer,
       }).map(([name, shapes]) => [name, new Mesh(gl, shapes)]),
     );
     this.textures = { white: white(gl), prints: texture(gl, board.prints()), letters: texture(gl, lettering()) };
@@ -98,6 +100,12 @@ export class Picture {
     this.frames += 1;
   }
 
+  /** The camera's right, in the world. */
+  right() {
+    const camera = this.mode === "stereo" ? this.views.left : this.camera;
+    return [camera[0], camera[4], camera[8]];
+  }
+
   fit() {
     const scale = Math.min(window.devicePixelRatio || 1, SHARPEST);
     const width = Math.max(1, Math.round(this.canvas.clientWidth * scale));
@@ -115,6 +123,7 @@ export class Picture {
     view.lookAt(camera, eye, [0, -8, 0]);
     const light = LIGHTS[this.dark ? "dark" : "light"];
     this.drawGround(camera, lens, light.bench, 40, 420, FLOOR, 0);
+    this.drawPointer(camera, lens, light.bench.line);
     this.drawShadow(camera, lens);
     this.drawSolid(camera, lens, light.bench, eye, SUN, [
       [this.meshes.solids, this.textures.white, this.model],
@@ -170,6 +179,15 @@ export class Picture {
       program.matrix("model", model);
       mesh.draw();
     }
+  }
+
+  drawPointer(camera, lens, [red, green, blue]) {
+    const program = this.begin(this.programs.plain, camera, lens);
+    this.under.set(IDENTITY);
+    this.under[13] = FLOOR + 0.3;
+    program.matrix("model", this.under);
+    program.set("tint", [red, green, blue, 1]);
+    this.meshes.pointer.draw();
   }
 
   /** The board's own shadow on the bench; the stencil keeps it from lying on itself. */

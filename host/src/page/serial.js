@@ -23,6 +23,8 @@ export class SerialBoard {
     this.intake = intake;
     this.port = null;
     this.writer = null;
+    this.reader = null;
+    this.ended = null;
     this.latency = new Latency();
     this.latest = { message: "", state: "waiting" };
     if (!hasSerial()) return;
@@ -74,6 +76,7 @@ export class SerialBoard {
 
   async read(port) {
     const reader = port.readable.getReader();
+    this.reader = reader;
     try {
       for (;;) {
         const { value, done } = await reader.read();
@@ -85,6 +88,7 @@ export class SerialBoard {
     }
     reader.releaseLock();
     if (this.port === port) this.lost(port);
+    else this.ended?.();
   }
 
   lost(port) {
@@ -102,11 +106,18 @@ export class SerialBoard {
   }
 
   async close() {
-    const port = this.port;
+    const { port, writer, reader } = this;
     this.port = null;
-    this.writer?.releaseLock();
     this.writer = null;
-    await port?.close().catch(() => {});
+    if (!writer) return;
+    writer.releaseLock();
+    // A port that is being read does not close.
+    const over = new Promise((done) => {
+      this.ended = done;
+    });
+    await reader.cancel().catch(() => {});
+    await over;
+    await port.close().catch(() => {});
   }
 
   sample(w, x, y, z, sequence, micros, status) {

@@ -7,10 +7,12 @@ mod motions;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use clap::ValueEnum;
 use vrduino_emulator::board::{Board, Setup};
 use vrduino_emulator::firmware::{self, BuildOptions};
 use vrduino_emulator::image::Image;
 use vrduino_emulator::motion::Motion;
+use vrduino_emulator::mpu9250::Part;
 use vrduino_emulator::time::{self, MILLISECOND, Ticks};
 
 use super::{Event, Gone, Listener, Order, Truth};
@@ -34,6 +36,34 @@ pub struct Emulation {
     pub image: Option<PathBuf>,
     /// What the sensor is carried through: one of [`MOTIONS`], or a file.
     pub motion: String,
+    /// The individual sensor.
+    pub part: PartKind,
+    /// Which of its kind, and which noise.
+    pub seed: u64,
+    /// As fast as a real board; else as fast as this computer allows.
+    pub paced: bool,
+}
+
+/// How well a sensor was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum PartKind {
+    /// No error but quantisation
+    #[default]
+    Perfect,
+    /// Errors drawn within the data sheet's limits
+    Typical,
+    /// Errors at the data sheet's limits
+    Worst,
+}
+
+impl Emulation {
+    fn part(&self) -> Part {
+        match self.part {
+            PartKind::Perfect => Part::perfect(),
+            PartKind::Typical => Part::typical(self.seed),
+            PartKind::Worst => Part::worst(self.seed),
+        }
+    }
 }
 
 impl Default for Emulation {
@@ -41,6 +71,9 @@ impl Default for Emulation {
         Self {
             image: None,
             motion: MOTIONS[0].to_owned(),
+            part: PartKind::default(),
+            seed: 1,
+            paced: true,
         }
     }
 }
@@ -57,7 +90,7 @@ pub(super) fn run(mut emulation: Emulation, listener: &mut Listener) -> Result<(
         Err(failure) => return listener.tell(Event::Ended(Err(failure))),
     };
     loop {
-        let mut session = Session::new(image.clone(), motion, hand);
+        let mut session = Session::new(image.clone(), motion, hand, &emulation);
         let name = session.run(listener)?;
         // Asked for another motion: the board is switched off and on again.
         hand = Hand::default();
@@ -108,14 +141,15 @@ struct Session {
     /// Whether its port has been opened since it was last plugged in.
     open: bool,
     next_truth: Ticks,
-    /// Wall and emulated time from which on it is held to real time.
-    pace: (Instant, Ticks),
+    /// Wall and emulated time from which on it is held to real time, if it is.
+    pace: Option<(Instant, Ticks)>,
 }
 
 impl Session {
-    fn new(image: Image, motion: Box<dyn Motion>, hand: Hand) -> Self {
+    fn new(image: Image, motion: Box<dyn Motion>, hand: Hand, emulation: &Emulation) -> Self {
         let motion: std::sync::Arc<dyn Motion> = motion.into();
-        let setup = Setup::new(Box::new(motions::Shared(motion.clone())));
+        let mut setup = Setup::new(Box::new(motions::Shared(motion.clone())));
+        setup.part = emulation.part();
         Self {
             board: Board::new(image, setup),
             motion,
@@ -123,7 +157,7 @@ impl Session {
             plugged: true,
             open: false,
             next_truth: 0,
-            pace: (Instant::now(), 0),
+            pace: emulation.paced.then(|| (Instant::now(), 0)),
         }
     }
 
@@ -192,12 +226,14 @@ impl Session {
 
     /// Waits until real time has caught up with emulated time.
     fn keep_pace(&mut self) {
-        let (wall, emulated) = self.pace;
+        let Some((wall, emulated)) = self.pace else {
+            return;
+        };
         let ran = Duration::from_secs_f64(time::seconds(self.board.now() - emulated));
         let ahead = ran.saturating_sub(wall.elapsed());
         if ahead.is_zero() {
             // Behind: do not make up for it later by running too fast.
-            self.pace = (Instant::now(), self.board.now());
+            self.pace = Some((Instant::now(), self.board.now()));
         } else {
             std::thread::sleep(ahead);
         }

@@ -115,13 +115,31 @@ fn open(name: Option<&str>) -> Result<(Box<dyn Link>, String), Failure> {
     if let Some(address) = name.strip_prefix(TCP) {
         return Ok((Box::new(dial(address)?), name));
     }
-    let mut port = serialport::new(&name, BAUD)
-        .timeout(PATIENCE)
-        .open()
-        .map_err(|error| trouble::opening(&name, &error))?;
+    let mut port = open_at(&name, BAUD)?;
     // Some boards and systems wait for it before they send.
     let _ = port.write_data_terminal_ready(true);
     Ok((Box::new(port), name))
+}
+
+/// Opens a serial port at this speed.
+///
+/// # Errors
+///
+/// Why it does not open.
+pub fn open_at(name: &str, baud: u32) -> Result<Box<dyn serialport::SerialPort>, Failure> {
+    serialport::new(name, baud)
+        .timeout(PATIENCE)
+        .open()
+        .map_err(|error| trouble::opening(name, &error))
+}
+
+/// Whether it can be had: opens it and lets go of it again.
+///
+/// # Errors
+///
+/// Why it does not open.
+pub fn try_port(name: &str) -> Result<(), Failure> {
+    open(Some(name)).map(drop)
 }
 
 fn dial(address: &str) -> Result<TcpStream, Failure> {

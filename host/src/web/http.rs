@@ -190,10 +190,11 @@ pub fn answer(mut stream: &TcpStream, response: &Response, head_only: bool) -> i
         field.unwrap_or_default(),
     );
     stream.set_write_timeout(Some(PATIENCE))?;
-    stream.write_all(head.as_bytes())?;
+    let mut bytes = head.into_bytes();
     if !head_only {
-        stream.write_all(&response.body)?;
+        bytes.extend_from_slice(&response.body);
     }
+    stream.write_all(&bytes)?;
     stream.shutdown(Shutdown::Write)?;
     // What nobody has read would make the system break the connection, and the answer be lost.
     let until = Instant::now() + LOOK;

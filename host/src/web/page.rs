@@ -26,6 +26,7 @@ pub const PARTS: &[Part] = parts![
     "console.js",
     "controls.js",
     "gl.js",
+    "hand.js",
     "history.js",
     "hook.js",
     "icon.svg",

@@ -3,6 +3,7 @@
 
 use std::io::{self, Write};
 use std::net::TcpStream;
+use std::thread;
 use std::time::{Duration, Instant};
 
 use tungstenite::handshake::server::{create_response, write_response};
@@ -22,6 +23,10 @@ const WAITING: usize = 1024 * 1024;
 
 /// How long a page may take nothing.
 pub const PATIENCE: Duration = Duration::from_secs(5);
+
+/// How long a page may take to answer a good-bye, and how often it is looked whether it has.
+const FAREWELL: Duration = Duration::from_millis(300);
+const LOOK: Duration = Duration::from_millis(10);
 
 /// Why a connection is over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,14 +144,59 @@ impl Socket {
         }
     }
 
-    /// Says good-bye, and why.
+    /// Says good-bye, and why; who does not answer is not waited for long.
     pub fn close(mut self, reason: &'static str) {
         let frame = CloseFrame {
             code: CloseCode::Away,
             reason: reason.into(),
         };
-        // Who does not listen is not waited for.
-        let _ = self.socket.close(Some(frame));
-        let _ = self.socket.flush();
+        let until = Instant::now() + FAREWELL;
+        let mut going = self.went_or_waits(|socket| socket.close(Some(frame)));
+        while going && Instant::now() < until {
+            thread::sleep(LOOK);
+            going = self.went_or_waits(|socket| socket.read().map(|_| ()));
+        }
+    }
+
+    fn went_or_waits(
+        &mut self,
+        act: impl FnOnce(&mut WebSocket<TcpStream>) -> Result<(), Error>,
+    ) -> bool {
+        match act(&mut self.socket) {
+            Ok(()) => true,
+            Err(Error::Io(error)) => http::is_patient(&error),
+            Err(_) => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::{TcpListener, TcpStream};
+
+    use tungstenite::Message;
+
+    use super::{Over, Socket, WAITING};
+
+    #[test]
+    fn who_takes_nothing_costs_so_much_and_no_more() {
+        let listener = TcpListener::bind(("127.0.0.1", 0)).unwrap();
+        let _other = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (stream, _) = listener.accept().unwrap();
+        let mut socket = Socket::open(stream, b"", Vec::new()).unwrap();
+        let batch = vec![0; 64 * 1024];
+        // Until the system takes nothing more for it.
+        while socket.is_clear().unwrap() {
+            socket.send(Message::Binary(batch.clone().into())).unwrap();
+        }
+        let mut sent = 0;
+        let over = loop {
+            match socket.send(Message::Binary(batch.clone().into())) {
+                Ok(()) => sent += batch.len(),
+                Err(over) => break over,
+            }
+            assert!(sent <= WAITING, "{sent} bytes wait for it");
+        };
+        assert_eq!(over, Over::TooSlow);
     }
 }

@@ -141,7 +141,19 @@ impl Tab {
         }
     }
 
-    /// The same, as numbers.
+    /// Makes `window.given` of a long text, without its being part of a script, which the browser would keep.
+    pub fn give(&mut self, text: &str) -> Result<(), Failed> {
+        let window = self.call("Runtime.evaluate", &json!({"expression": "window"}))?;
+        let params = json!({
+            "objectId": window["result"]["objectId"],
+            "functionDeclaration": "function (text) { this.given = text; }",
+            "arguments": [{"value": text}],
+        });
+        self.call("Runtime.callFunctionOn", &params)?;
+        Ok(())
+    }
+
+    /// The value of an expression, as numbers.
     pub fn numbers(&mut self, expression: &str) -> Result<Vec<f64>, Failed> {
         Ok(serde_json::from_value(self.eval(expression)?)?)
     }
@@ -206,17 +218,17 @@ impl Tab {
     /// What the page looks like, kept in `target/pictures`; returns how many bytes it takes.
     pub fn picture(&mut self, name: &str) -> Result<usize, Failed> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/pictures");
-        self.picture_in(&folder, name)
-    }
-
-    /// The same in another folder.
-    pub fn picture_in(&mut self, folder: &Path, name: &str) -> Result<usize, Failed> {
-        let shot = self.call("Page.captureScreenshot", &json!({"format": "png"}))?;
-        let data = shot["data"].as_str().ok_or("a picture without data")?;
-        let png = BASE64.decode(data.as_bytes())?;
-        std::fs::create_dir_all(folder)?;
+        let png = self.png()?;
+        std::fs::create_dir_all(&folder)?;
         std::fs::write(folder.join(name), &png)?;
         Ok(png.len())
+    }
+
+    /// What the page looks like.
+    pub fn png(&mut self) -> Result<Vec<u8>, Failed> {
+        let shot = self.call("Page.captureScreenshot", &json!({"format": "png"}))?;
+        let data = shot["data"].as_str().ok_or("a picture without data")?;
+        Ok(BASE64.decode(data.as_bytes())?)
     }
 
     /// Leaves the page; fails if anything went wrong while it was open.

@@ -3,6 +3,7 @@
 #![allow(dead_code)] // not every test asks for everything
 
 use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
@@ -23,16 +24,48 @@ pub struct Program {
 pub struct Ended {
     pub code: Option<i32>,
     /// Standard output, what was not asked for before.
-    pub said: Vec<String>,
+    pub out: String,
     /// Standard error.
-    pub complained: String,
+    pub err: String,
+}
+
+/// Runs it to its end.
+pub fn vrduino(arguments: &[&str]) -> Ended {
+    Program::start(arguments).end()
+}
+
+/// A file or folder of a test's own.
+pub fn place(name: &str) -> PathBuf {
+    let name = format!("{name}-{}", std::process::id());
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+impl Ended {
+    /// Fails unless it ended so.
+    #[track_caller]
+    pub fn expect(&self, code: i32) -> &Self {
+        assert_eq!(self.code, Some(code), "{}{}", self.out, self.err);
+        self
+    }
+
+    /// Fails unless it has said so, somewhere.
+    #[track_caller]
+    pub fn said(&self, words: &str) -> &Self {
+        let said = self.out.contains(words) || self.err.contains(words);
+        assert!(said, "not said: {words}\n{}{}", self.out, self.err);
+        self
+    }
 }
 
 impl Program {
     /// Starts it with these arguments, and nothing to read.
     pub fn start(arguments: &[&str]) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_vrduino"))
-            .args(arguments)
+        Self::spawn(Command::new(env!("CARGO_BIN_EXE_vrduino")).args(arguments))
+    }
+
+    /// Starts it as it was set up, with nothing to read.
+    pub fn spawn(command: &mut Command) -> Self {
+        let mut child = command
             .env("RUST_BACKTRACE", "0")
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
@@ -94,8 +127,8 @@ impl Program {
         };
         Ended {
             code: status.code(),
-            said: self.lines.iter().collect(),
-            complained: self.errors.recv().unwrap_or_default(),
+            out: self.lines.iter().collect::<Vec<_>>().join("\n"),
+            err: self.errors.recv().unwrap_or_default(),
         }
     }
 }

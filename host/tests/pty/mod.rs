@@ -61,14 +61,25 @@ pub struct PluggedIn {
 
 impl PluggedIn {
     /// With the head's motion; what `noise` gives comes before every millisecond of the board's bytes.
-    pub fn new(mut noise: impl FnMut() -> Vec<u8> + Send + 'static) -> Self {
+    pub fn new(noise: impl FnMut() -> Vec<u8> + Send + 'static) -> Self {
+        Self::with(
+            |image| Board::new(image, Setup::new(motion::built_in())),
+            noise,
+        )
+    }
+
+    /// This board.
+    pub fn with(
+        board: impl FnOnce(Image) -> Board + Send + 'static,
+        mut noise: impl FnMut() -> Vec<u8> + Send + 'static,
+    ) -> Self {
         let image = firmware::build(BuildOptions { quiet: true }).expect("the firmware builds");
         let image = Image::open(&image).expect("an image");
         let Pty { mut device, path } = Pty::open();
         let wanted = Arc::new(AtomicBool::new(true));
         let flag = Arc::clone(&wanted);
         let thread = thread::spawn(move || {
-            let mut board = Board::new(image, Setup::new(motion::built_in()));
+            let mut board = board(image);
             while flag.load(Ordering::Relaxed) {
                 board.run(MILLISECOND);
                 let mut typed = [0; 256];

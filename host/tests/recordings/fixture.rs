@@ -12,7 +12,7 @@ use vrduino::wire::frame::Counts;
 use vrduino_host::recording::{Entry, Head, Reader, Remark, Row, Voice, Writer};
 use vrduino_host::stream::Sample;
 
-use crate::outcome::vrduino;
+use crate::program::vrduino;
 
 /// A file that is gone after the test.
 pub struct Scratch(pub PathBuf);

@@ -8,8 +8,6 @@ mod files;
 #[cfg(unix)]
 mod interrupted;
 
-mod outcome;
-
 #[cfg(feature = "parquet")]
 mod parquet;
 

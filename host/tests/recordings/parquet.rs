@@ -6,7 +6,7 @@ use std::path::Path;
 use vrduino_host::recording::{self, Head, Reader};
 
 use crate::fixture::{Random, Scratch, assert_same, entries, read, turns, write};
-use crate::outcome::vrduino;
+use crate::program::vrduino;
 
 fn convert(from: &str, to: &Scratch) {
     let mut reader = Reader::open(Path::new(from)).expect("a recording");

@@ -6,7 +6,7 @@ use vrduino_host::recording::{Entry, Head};
 use vrduino_host::stream::Sample;
 
 use crate::fixture::{Scratch, row, turned, turns, write};
-use crate::outcome::vrduino;
+use crate::program::vrduino;
 
 const YAW: &str = "#0072B2";
 const GAP: &str = "#F2DAE8";

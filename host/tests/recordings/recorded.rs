@@ -11,7 +11,7 @@ use vrduino_host::recording::{Assembly, Entry, Head, Reader, Voice};
 use vrduino_host::source::{Choice, Emulation};
 
 use crate::fixture::{Scratch, assert_same, entries, samples, turns, write};
-use crate::outcome::vrduino;
+use crate::program::vrduino;
 
 #[test]
 fn none_is_missing_and_the_board_is_introduced() {

@@ -12,7 +12,7 @@ use vrduino_host::source::{Choice, Replay};
 use vrduino_host::stream::{Item, Sample};
 
 use crate::fixture::{Scratch, entries, row, samples, turned, turns, write};
-use crate::outcome::vrduino;
+use crate::program::vrduino;
 
 /// Nothing here takes so long, even on a busy machine.
 const LIMIT: Duration = Duration::from_secs(120);

@@ -147,7 +147,7 @@ fn text(told: &Told<'_>) -> String {
 }
 
 /// What a page asks for.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, PartialEq)]
 pub enum Asked {
     /// To type this line.
     Line(String),
@@ -159,6 +159,8 @@ pub enum Asked {
     Stop,
     /// To carry its sensor through this motion.
     Motion(String),
+    /// To turn it there by hand: body to world, w, x, y, z.
+    Turn([f64; 4]),
     /// To pull its plug, or put it back.
     Unplug(bool),
 }
@@ -170,6 +172,7 @@ enum Request {
     Start(String),
     Stop(bool),
     Motion(String),
+    Turn([f64; 4]),
     Unplug(bool),
 }
 
@@ -202,6 +205,7 @@ pub fn understand(message: &str) -> Result<Asked, String> {
         Request::Stop(true) => Ok(Asked::Stop),
         Request::Stop(false) => Err("error: nothing to stop".into()),
         Request::Motion(name) => Ok(Asked::Motion(name)),
+        Request::Turn(orientation) => Ok(Asked::Turn(orientation)),
         Request::Unplug(unplug) => Ok(Asked::Unplug(unplug)),
     }
 }

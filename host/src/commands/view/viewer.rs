@@ -21,7 +21,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Updates that wait for a slow page: about two seconds of the fastest stream.
 const HOLD: usize = 4000;
 
-/// Messages of a page that are taken between two batches.
+/// Messages that are taken at a time, and sent at a time.
 const MESSAGES: usize = 16;
 
 /// A page.
@@ -30,8 +30,10 @@ pub struct Viewer<'a> {
     choice: &'a Choice,
     socket: Socket,
     updates: Subscription,
+    /// What goes out next, in the order in which it came,
+    messages: Vec<Message>,
+    /// and behind it these.
     samples: Vec<Sample>,
-    texts: Vec<String>,
 }
 
 impl<'a> Viewer<'a> {
@@ -41,8 +43,8 @@ impl<'a> Viewer<'a> {
             choice,
             socket,
             updates: hub.subscribe(Hold::Newest(HOLD)),
+            messages: Vec::new(),
             samples: Vec::new(),
-            texts: Vec::new(),
         }
     }
 
@@ -77,38 +79,52 @@ impl<'a> Viewer<'a> {
         let mut patience = LOOK;
         while let Some(update) = self.updates.next(patience) {
             patience = Duration::ZERO;
-            match update {
-                Update::Stream(items) => {
-                    for item in items.iter() {
-                        match item {
-                            Item::Sample(sample) => self.samples.push(*sample),
-                            Item::Line(line) => self.texts.push(messages::line(line)),
-                            Item::Registers(_) => {}
-                        }
-                    }
-                }
-                Update::Truth(truth) => self.texts.push(messages::truth(&truth)),
-                Update::Status(status) => {
-                    let dropped = self.updates.dropped();
-                    self.texts.push(messages::status(&status, dropped));
-                }
-                // The status has told it.
-                Update::Ended(_) | Update::Bytes(_) => {}
-            }
-            if self.samples.len() >= BATCH {
+            self.take(&update);
+            if self.messages.len() >= MESSAGES || self.samples.len() >= BATCH {
                 break;
             }
         }
     }
 
-    fn pass_on(&mut self) -> Result<(), Over> {
+    fn take(&mut self, update: &Update) {
+        match update {
+            Update::Stream(items) => {
+                for item in items.iter() {
+                    match item {
+                        Item::Sample(sample) => self.samples.push(*sample),
+                        Item::Line(line) => self.add(messages::line(line)),
+                        Item::Registers(_) => {}
+                    }
+                }
+            }
+            Update::Truth(truth) => self.add(messages::truth(truth)),
+            Update::Status(status) => {
+                let dropped = self.updates.dropped();
+                self.add(messages::status(status, dropped));
+            }
+            // The status has told it.
+            Update::Ended(_) | Update::Bytes(_) => {}
+        }
+    }
+
+    /// Behind the samples that came before.
+    fn add(&mut self, text: String) {
+        self.seal();
+        self.messages.push(Message::Text(text.into()));
+    }
+
+    fn seal(&mut self) {
         for samples in self.samples.chunks(BATCH) {
-            self.socket
-                .send(Message::Binary(messages::batch(samples).into()))?;
+            let batch = messages::batch(samples);
+            self.messages.push(Message::Binary(batch.into()));
         }
         self.samples.clear();
-        for text in self.texts.drain(..) {
-            self.socket.send(Message::Text(text.into()))?;
+    }
+
+    fn pass_on(&mut self) -> Result<(), Over> {
+        self.seal();
+        for message in self.messages.drain(..) {
+            self.socket.send(message)?;
         }
         Ok(())
     }
@@ -119,7 +135,7 @@ impl<'a> Viewer<'a> {
             Err(line) => Some(line),
         };
         if let Some(line) = refused {
-            self.texts.push(messages::line(&line));
+            self.add(messages::line(&line));
         }
     }
 
@@ -148,8 +164,9 @@ impl<'a> Viewer<'a> {
                 }
                 self.hub.order(Order::Motion(name));
             }
+            Asked::Turn(orientation) if is_emulated => self.hub.order(Order::Turn(orientation)),
             Asked::Unplug(unplug) if is_emulated => self.hub.order(Order::Plug(!unplug)),
-            Asked::Stop | Asked::Motion(_) | Asked::Unplug(_) => {
+            Asked::Stop | Asked::Motion(_) | Asked::Turn(_) | Asked::Unplug(_) => {
                 return Err("error: only the emulated board can do that");
             }
         }

@@ -21,6 +21,11 @@ pub struct Found {
 }
 
 impl Found {
+    /// What it says that made it.
+    pub fn manufacturer(&self) -> Option<&str> {
+        self.usb.as_ref()?.manufacturer.as_deref()
+    }
+
     /// Whether it has a Teensy's numbers.
     pub fn is_board(&self) -> bool {
         self.usb

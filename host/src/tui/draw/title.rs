@@ -56,7 +56,7 @@ pub fn keys(frame: &mut Frame, model: &Model, area: Rect) {
         ("p", "pause"),
         ("m", "motion"),
         ("u", "plug"),
-        ("±", "tilt"),
+        ("+ -", "tilt"),
     ];
     let mut spans = vec![Span::raw(" ")];
     let mut room = usize::from(area.width);

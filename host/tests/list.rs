@@ -1,0 +1,36 @@
+//! Promise: who asks which ports there are is told, and what to do where there is none.
+
+mod program;
+
+use program::vrduino;
+
+/// Whether a board is plugged in or not, for nobody knows where this is run.
+#[test]
+fn boards_are_listed_or_it_is_said_what_to_do() {
+    let listed = vrduino(&["list"]);
+    match listed.code {
+        Some(0) => assert!(
+            !listed.out.is_empty() && listed.err.is_empty(),
+            "{listed:?}"
+        ),
+        _ => {
+            listed
+                .expect(3)
+                .said("no board is plugged in")
+                .said("--emulate");
+        }
+    }
+}
+
+#[test]
+fn programs_get_json() {
+    let all = vrduino(&["list", "--all", "--json"]);
+    let rows: serde_json::Value = serde_json::from_str(&all.out).expect("JSON");
+    let rows = rows.as_array().expect("a list");
+    all.expect(if rows.is_empty() { 3 } else { 0 });
+    for row in rows {
+        let what = row["what"].as_str().expect("a word");
+        assert!(["board", "loader", "usb", "plain"].contains(&what), "{row}");
+        assert_eq!(row["name"].is_null(), what == "loader", "{row}");
+    }
+}

@@ -1,0 +1,15 @@
+//! Promise: what `vrduino view` and `vrduino serve` say to pages is what `docs/host-protocol.md` says they do,
+//! it comes from the emulated board, and pages of other people's get nothing.
+
+mod client;
+
+mod course;
+
+mod page;
+
+mod program;
+
+mod strangers;
+
+#[cfg(unix)]
+mod terminal;
