@@ -323,7 +323,10 @@ impl Worker {
         self.conversation.end();
         self.status = Status::of(&choice);
         self.stream = Stream::new();
-        self.source = listen(choice, self.number, self.inputs.clone());
+        let next = listen(choice, self.number, self.inputs.clone());
+        let before = std::mem::replace(&mut self.source, next);
+        // It may have to end something first, as the building of an image.
+        thread::spawn(move || drop(before));
         self.tell_status();
     }
 

@@ -102,7 +102,6 @@ export class EmulatedControls {
   show({ kind, state, motions = [], motion }) {
     const emulated = kind === "emulated";
     byId("emulated").hidden = !emulated;
-    write("hint", hint(emulated && motion === "hand"));
     if (!emulated) return;
     this.unplugged = state === "lost";
     write("cable", this.unplugged ? "Plug it in" : "Pull the cable");
@@ -112,11 +111,6 @@ export class EmulatedControls {
     }
     if (motion && document.activeElement !== choice) choice.value = motion;
   }
-}
-
-function hint(inHand) {
-  if (!inHand) return document.body.dataset.view === "board" ? "drag to go round it · scroll to go nearer" : "";
-  return document.body.dataset.view === "board" ? "drag to turn the board · shift and drag to go round it" : "drag to turn the head";
 }
 
 /** The wearer of the headset: nothing of it goes to the board. */

@@ -6,6 +6,8 @@ const SPEED = 0.008;
 /** So long the hand takes to get there, in milliseconds: a drag goes on from where the last was to lead. */
 const ARRIVES = 1500;
 
+export const isInHand = ({ kind, motion }) => kind === "emulated" && motion === "hand";
+
 export class Hand {
   /** `ask` takes what is wanted of the emulated board. */
   constructor(ask) {

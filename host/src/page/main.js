@@ -13,7 +13,7 @@ import { NOTES, Samples, STATUS_KNOWN } from "./samples.js";
 import { History } from "./history.js";
 import { Picture } from "./picture.js";
 import { Orbit } from "./orbit.js";
-import { Hand } from "./hand.js";
+import { Hand, isInHand } from "./hand.js";
 import { Labels } from "./labels.js";
 import { Chart } from "./charts.js";
 import { Words } from "./status.js";
@@ -102,7 +102,7 @@ const picture = new Picture(byId("picture"));
 picture.restored = redraw;
 const hand = new Hand((request) => source.ask(request));
 const orbit = new Orbit(picture.canvas, redraw, (across, down, event) => {
-  const inHand = shown.status.kind === "emulated" && shown.status.motion === "hand";
+  const inHand = isInHand(shown.status);
   const stereo = picture.mode === "stereo";
   // The camera of the board view goes round with shift; that of the eyes is the head itself.
   if (inHand && (stereo || !event.shiftKey)) hand.drag(across, down, picture.right(), shown.truth);
@@ -135,7 +135,6 @@ function show(mode) {
   picture.mode = mode;
   document.body.dataset.view = mode;
   byId(`view-${mode}`).checked = true;
-  emulated.show(shown.status);
   redraw();
 }
 
@@ -178,6 +177,7 @@ function frame(now) {
     wordsAt = now;
     const { flags } = samples.latest;
     words.show(samples, history, shown.status);
+    words.hint(shown.status, picture.mode, samples.count);
     board.show(shown.status, { known: Boolean(flags & STATUS_KNOWN), notes: Boolean(flags & NOTES) });
   }
   if (!dirty) return;

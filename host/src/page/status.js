@@ -1,6 +1,7 @@
 // What is going on, in words. Numbers are written a few times a second, and only where they differ.
 
 import * as flag from "./samples.js";
+import { isInHand } from "./hand.js";
 import { apart, tiltApart } from "./view.js";
 
 const COMPASS = [
@@ -72,6 +73,16 @@ export class Words {
     say("motion", flags & flag.STILL ? "at rest" : "moving", flags & flag.STILL ? "good" : "");
     const clipped = performance.now() - this.clippedAt < LINGERS;
     say("clipping", clipped ? "at the end of its range" : "within its range", clipped ? "bad" : "good");
+  }
+
+  /** What can be done with the picture. */
+  hint(status, mode, count) {
+    const board = mode === "board";
+    if (count === 0 && status.state === "connected") {
+      write("hint", "the board measures its gyro's bias: keep it still");
+    } else if (isInHand(status)) {
+      write("hint", board ? "drag to turn the board · shift and drag to go round it" : "drag to turn the head");
+    } else write("hint", board ? "drag to go round it · scroll to go nearer" : "");
   }
 
   losses(status, history) {

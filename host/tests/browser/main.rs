@@ -26,8 +26,9 @@ use libtest_mimic::{Arguments, Failed, Trial};
 
 type Test = fn(&Chromium) -> Result<(), Failed>;
 
-const TESTS: [(&str, Test); 14] = [
+const TESTS: [(&str, Test); 15] = [
     ("the_board_turns_as_the_sensor_does", moving::turns),
+    ("a_drag_turns_the_emulated_sensor", moving::by_hand),
     ("two_pages_show_the_same_board", moving::two_pages),
     ("two_eyes_see_what_the_library_says", eyes::matrices),
     ("controls_reach_the_board", controls::reach_the_board),

@@ -12,12 +12,12 @@ use super::program::Program;
 /// The image may have to be built first.
 pub const START: u64 = 300;
 
-/// For some seconds, every truth that comes, with what the page had at that moment.
+/// For eight seconds of the board's, every truth that comes, with what the page had at that moment.
 const WATCH: &str = "(async () => {
     const seen = [];
     let last = null;
-    const end = performance.now() + 9000;
-    while (performance.now() < end) {
+    const end = vrduino.truth.t + 8;
+    while (vrduino.truth.t < end) {
         await new Promise((done) => setTimeout(done, 20));
         const { truth } = vrduino;
         if (!truth || truth === last) continue;
@@ -76,6 +76,25 @@ pub fn turns(chromium: &Chromium) -> Result<(), Failed> {
     if bytes < 50_000 {
         return Err(format!("{bytes} bytes of picture: it shows nothing").into());
     }
+    tab.close()
+}
+
+pub fn by_hand(chromium: &Chromium) -> Result<(), Failed> {
+    let program = Program::start(&["--emulate", "--motion", "hand"])?;
+    let mut tab = chromium.open(&program.url)?;
+    tab.until(
+        "samples arrive",
+        "vrduino.count > 1000 && vrduino.truth",
+        START,
+    )?;
+    // To the right and down: to the left and upwards is what the board then faces.
+    tab.drag([400.0, 300.0], [500.0, 340.0])?;
+    let turned = "2 * Math.atan2(vrduino.truth.q[2], vrduino.truth.q[0]) > 0.7";
+    tab.until("the sensor has turned", turned, 20)?;
+    let angles = "vrduino.angles[0] > 40 && vrduino.angles[1] > 10";
+    tab.until("so has the board", angles, 10)?;
+    let off = "parseFloat(document.getElementById('truth').textContent) < 2";
+    tab.until("as far", off, 10)?;
     tab.close()
 }
 

@@ -28,7 +28,7 @@ pub fn for_the_readme(chromium: &Chromium) -> Result<(), Failed> {
         tab.eval(&format!("document.getElementById('view-{mode}').click()"))?;
         // The charts are full, and the head is turned.
         tab.until("ten seconds have come", "vrduino.count > 10500", START)?;
-        let turned = "Math.abs(vrduino.angles[0]) > 12 && Math.abs(vrduino.angles[0]) < 35";
+        let turned = "((yaw, pitch) => Math.abs(yaw) > 8 && Math.abs(yaw) < 30 && pitch < -3 && pitch > -20)(...vrduino.angles)";
         tab.until("the head is turned", turned, 60)?;
         let png = smaller(&tab.png()?)?;
         if png.len() > LARGEST {

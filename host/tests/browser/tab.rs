@@ -194,6 +194,22 @@ impl Tab {
         Ok(())
     }
 
+    /// Drags from one place in the window to another, in steps.
+    pub fn drag(&mut self, from: [f64; 2], to: [f64; 2]) -> Result<(), Failed> {
+        const STEPS: u32 = 10;
+        let mut mouse = |kind: &str, part: f64| {
+            let [x, y] = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * part);
+            let event = json!({"type": kind, "x": x, "y": y, "button": "left", "buttons": 1});
+            self.call("Input.dispatchMouseEvent", &event)
+        };
+        mouse("mousePressed", 0.0)?;
+        for step in 1..=STEPS {
+            mouse("mouseMoved", f64::from(step) / f64::from(STEPS))?;
+        }
+        mouse("mouseReleased", 1.0)?;
+        Ok(())
+    }
+
     /// Presses a key.
     pub fn press(&mut self, key: &str) -> Result<(), Failed> {
         let text = if key == "Enter" { "\r" } else { key };

@@ -127,7 +127,7 @@ impl Program {
         };
         Ended {
             code: status.code(),
-            out: self.lines.iter().collect::<Vec<_>>().join("\n"),
+            out: self.lines.iter().map(|line| line + "\n").collect(),
             err: self.errors.recv().unwrap_or_default(),
         }
     }

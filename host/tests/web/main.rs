@@ -11,5 +11,5 @@ mod program;
 
 mod strangers;
 
-#[cfg(unix)]
+#[cfg(all(unix, feature = "tui"))]
 mod terminal;

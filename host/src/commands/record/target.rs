@@ -1,7 +1,5 @@
 //! The file that is asked for, and how it is written.
 
-#[cfg(feature = "parquet")]
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -86,8 +84,8 @@ impl Target {
             Failure::new(failure.kind, sentence)
         })?;
         // The same twice does no harm.
-        let _ = fs::remove_file(meanwhile);
-        Ok(fs::metadata(&self.path).map_or(0, |metadata| metadata.len()))
+        let _ = std::fs::remove_file(meanwhile);
+        Ok(std::fs::metadata(&self.path).map_or(0, |metadata| metadata.len()))
     }
 
     /// As it is.

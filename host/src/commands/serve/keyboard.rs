@@ -1,8 +1,6 @@
 //! What is typed: key by key where there is a terminal, else as it comes.
 
-#[cfg(feature = "tui")]
-use std::io::IsTerminal;
-use std::io::{self, Read};
+use std::io::{self, IsTerminal, Read};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
@@ -24,17 +22,18 @@ pub enum Keyboard {
     /// A terminal that gives every key at once.
     #[cfg(feature = "tui")]
     Terminal(terminal::Terminal),
-    /// A pipe, a file, or a terminal that gives whole lines.
+    /// A pipe or a file.
     Pipe(Receiver<Vec<u8>>),
+    /// A terminal that gives whole lines: what is typed in one belongs together.
+    Lines(Receiver<Vec<u8>>),
 }
 
 impl Keyboard {
     /// The standard input.
     pub fn open() -> Self {
+        let is_terminal = io::stdin().is_terminal();
         #[cfg(feature = "tui")]
-        if io::stdin().is_terminal()
-            && let Ok(terminal) = terminal::Terminal::open()
-        {
+        if is_terminal && let Ok(terminal) = terminal::Terminal::open() {
             return Self::Terminal(terminal);
         }
         let (sender, receiver) = mpsc::channel();
@@ -47,7 +46,11 @@ impl Keyboard {
                 }
             }
         });
-        Self::Pipe(receiver)
+        if is_terminal {
+            Self::Lines(receiver)
+        } else {
+            Self::Pipe(receiver)
+        }
     }
 
     /// The next, if it comes within this time.
@@ -63,6 +66,12 @@ impl Keyboard {
                     None
                 }
             },
+            Self::Lines(lines) => match lines.recv_timeout(patience) {
+                Ok(line) if line.trim_ascii() == b"d" => Some(Typed::Print),
+                Ok(line) => Some(Typed::Bytes(line)),
+                Err(RecvTimeoutError::Timeout) => None,
+                Err(RecvTimeoutError::Disconnected) => Some(Typed::End),
+            },
         }
     }
 
@@ -71,7 +80,7 @@ impl Keyboard {
         match self {
             #[cfg(feature = "tui")]
             Self::Terminal(_) => "\r\n",
-            Self::Pipe(_) => "\n",
+            Self::Pipe(_) | Self::Lines(_) => "\n",
         }
     }
 }

@@ -7,9 +7,23 @@ use crate::stream::Item;
 /// Bytes of a line at most; the board's have 160.
 const LONGEST: usize = 1024;
 
+/// Bytes of a frame at most, between its zeros (docs/wire-format.md).
+const LONGEST_FRAME: usize = 31;
+
+/// Where the next byte belongs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    Line,
+    /// Behind a zero: a frame begins, or a line.
+    Open,
+    /// In a frame, of which so many bytes have come.
+    Frame(usize),
+}
+
 /// Takes lines out of bytes.
 #[derive(Debug)]
 pub struct Lines {
+    place: Place,
     line: Vec<u8>,
     /// The line that is going on will be no good.
     is_spoilt: bool,
@@ -20,6 +34,7 @@ impl Lines {
     /// Of bytes that begin with a line.
     pub fn from_the_beginning() -> Self {
         Self {
+            place: Place::Line,
             line: Vec::new(),
             is_spoilt: false,
             frames: Frames::default(),
@@ -57,31 +72,39 @@ impl Lines {
         }
     }
 
-    /// The lines that these bytes complete. What is no text is left out: frames, which go from zero to zero,
-    /// and garbage.
+    /// The lines that these bytes complete. What is no text is left out: frames and garbage.
     fn take(&mut self, bytes: &[u8]) -> Vec<String> {
-        let mut lines = Vec::new();
-        for &byte in bytes {
-            match byte {
-                b'\n' => {
-                    let line = std::mem::take(&mut self.line);
-                    if !std::mem::take(&mut self.is_spoilt)
-                        && let Ok(line) = String::from_utf8(line)
-                    {
-                        lines.push(line);
-                    }
-                }
-                0 => {
-                    self.line.clear();
-                    self.is_spoilt = false;
-                }
-                b'\t' | b'\r' | b' '..=b'~' | 0x80.. if self.line.len() < LONGEST => {
-                    self.line.push(byte);
-                }
-                _ => self.is_spoilt = true,
+        bytes.iter().filter_map(|&byte| self.push(byte)).collect()
+    }
+
+    fn push(&mut self, byte: u8) -> Option<String> {
+        self.place = match (self.place, byte) {
+            (_, 0) => {
+                self.line.clear();
+                self.is_spoilt = false;
+                Place::Open
             }
+            (Place::Open, 1..32) => Place::Frame(1),
+            (Place::Frame(count), _) if count < LONGEST_FRAME => Place::Frame(count + 1),
+            (Place::Frame(_), _) => {
+                self.is_spoilt = true;
+                Place::Line
+            }
+            (Place::Line | Place::Open, _) => Place::Line,
+        };
+        match (self.place, byte) {
+            (Place::Line, b'\n') => {
+                let line = std::mem::take(&mut self.line);
+                let is_whole = !std::mem::take(&mut self.is_spoilt);
+                return String::from_utf8(line).ok().filter(|_| is_whole);
+            }
+            (Place::Line, b'\t' | b'\r' | b' '..=b'~' | 0x80..) if self.line.len() < LONGEST => {
+                self.line.push(byte);
+            }
+            (Place::Line, _) => self.is_spoilt = true,
+            (Place::Open | Place::Frame(_), _) => {}
         }
-        lines
+        None
     }
 }
 
@@ -109,11 +132,15 @@ mod tests {
         let mut lines = Lines::from_anywhere();
         assert!(lines.take(b"0.000 0.000").is_empty());
         assert_eq!(lines.take(b"\nwhole\n"), ["whole"]);
-        // A frame with a newline in it, then an answer.
-        let frame = b"\0\x04\x01\x50QC \n\x04abc\0OK stream text every 10\n";
-        assert_eq!(lines.take(frame), ["OK stream text every 10"]);
+        // Frames with newlines in them, then an answer.
+        let frames = b"\0\x04\x01\x50QC \n{\n\x04abc\0\0\n\n\n\0OK stream text every 10\n";
+        assert_eq!(lines.take(frames), ["OK stream text every 10"]);
         assert!(lines.take(b"\xff\xfe\n\x1b[0m\n").is_empty());
         assert!(lines.take(&[b'x'; 5000]).is_empty());
+        assert_eq!(lines.take(b"\nafter it\n"), ["after it"]);
+        // A zero that begins no frame is one line's loss, or two's.
+        assert!(lines.take(b"half\0\x01").is_empty());
+        assert!(lines.take(&[b'x'; 31]).is_empty());
         assert_eq!(lines.take(b"\nafter it\n"), ["after it"]);
     }
 }
