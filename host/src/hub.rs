@@ -111,8 +111,16 @@ impl Hub {
     /// What comes from now on.
     pub fn subscribe(&self, hold: Hold) -> Subscription {
         let (subscription, queue) = Subscription::new(hold);
-        queue.push(Update::Status(self.status()));
-        lock(&self.shared.queues).push(queue);
+        // Nobody is told anything meanwhile, so that nothing falls between.
+        let mut queues = lock(&self.shared.queues);
+        let status = self.status();
+        queue.push(Update::Status(Arc::clone(&status)));
+        if status.state == State::Ended {
+            let result = status.trouble.clone().map_or(Ok(()), Err);
+            queue.push(Update::Ended(result));
+        }
+        queues.push(queue);
+        drop(queues);
         subscription
     }
 

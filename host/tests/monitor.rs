@@ -71,12 +71,18 @@ fn without_a_board_it_waits_and_says_what_to_do() {
 }
 
 #[test]
+fn a_recording_that_is_not_there_is_not_waited_for() {
+    let ended = Program::start(&["monitor", "--replay", "no-such-file.csv"]).end();
+    ended.expect(5).said("no-such-file.csv");
+}
+
+#[test]
 fn a_board_that_sends_no_orientation_is_told_from_none() {
     // It measures its bias for the first second.
     let arguments = ["monitor", "--emulate", "--seconds", "0.05"];
     let ended = Program::start(&arguments).end();
     assert_eq!(ended.code, Some(4), "{ended:?}");
-    assert!(ended.err.contains("no orientation"), "{ended:?}");
+    assert!(ended.err.contains("emulated board sends"), "{ended:?}");
 }
 
 #[test]

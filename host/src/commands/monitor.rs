@@ -155,7 +155,10 @@ impl Watch {
     fn notice(&mut self, status: &Status) -> Result<(), Closed> {
         if status.trouble != self.trouble {
             self.trouble.clone_from(&status.trouble);
-            if let Some(trouble) = &self.trouble {
+            // What ends it is said at the end.
+            if let Some(trouble) = &self.trouble
+                && status.state != State::Ended
+            {
                 self.output.trouble(status.state, &trouble.sentence)?;
             }
         }

@@ -73,7 +73,8 @@ export class BoardControls {
     const now = flags.known ? (flags.notes ? "notes" : "default") : estimator;
     byId("estimator-default").checked = now === "default";
     byId("estimator-notes").checked = now === "notes";
-    write("estimator", there && now ? (now === "notes" ? "course notes, eq. 24" : "default") : "not said", there && now ? "" : "quiet");
+    if (there && now) write("estimator", now === "notes" ? "course notes, eq. 24" : "default", "");
+    else write("estimator", "not said", "quiet");
     for (const [name, { place }] of Object.entries(SETTINGS)) {
       const value = settings[name];
       const touched = performance.now() - (this.moved[name] ?? -Infinity) < SETTLED;

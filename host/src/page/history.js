@@ -14,7 +14,7 @@ const PAUSE = 1.5;
 const COUNTED = 0.25;
 
 /** One line of a chart. */
-export class Track {
+class Track {
   constructor() {
     this.least = new Float32Array(COLUMNS).fill(NaN);
     this.most = new Float32Array(COLUMNS).fill(NaN);

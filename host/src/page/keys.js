@@ -17,7 +17,8 @@ const KEYS = [
   { key: "?", does: "This help", act: "help" },
 ];
 
-const isTyping = (element) => element instanceof Element && element.matches("input:not([type=range], [type=radio], [type=checkbox]), select, textarea");
+const WRITTEN = "input:not([type=range], [type=radio], [type=checkbox]), select, textarea";
+const isTyping = (element) => element instanceof Element && element.matches(WRITTEN);
 
 export class Keys {
   /** `acts` has a function for each `act` above. */

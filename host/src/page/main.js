@@ -59,7 +59,6 @@ export const intake = {
   },
   truth(truth) {
     shown.truth = truth;
-    words.truth(samples, truth);
   },
 };
 
@@ -80,7 +79,8 @@ async function openSerial() {
     source = serial;
   } catch (error) {
     if (error.name !== "NotFoundError") {
-      intake.line(`error: ${error.message} Is the port open elsewhere? A port has one reader: end \`vrduino view\` or other programs that hold it.`);
+      const advice = "A port has one reader: end `vrduino view` or whatever else holds it.";
+      intake.line(`error: ${error.message} ${advice}`);
     }
   }
 }
@@ -121,7 +121,7 @@ const charts = [
     { track: history.roll, colour: "--z" },
   ], { signed: true, least: 15, most: 180 }),
   new Chart(byId("chart-rate"), [{ track: history.rate, colour: "--accent" }], { least: 10 }),
-  new Chart(byId("chart-latency"), [{ track: history.latency, colour: "--violet" }], { least: 2 }),
+  new Chart(byId("chart-latency"), [{ track: history.latency, colour: "--violet" }], { least: 1 }),
   new Chart(byId("chart-losses"), [{ track: history.missing, colour: "--bad" }], { least: 4, bars: true }),
 ];
 
@@ -169,6 +169,8 @@ new ResizeObserver(redraw).observe(document.body);
 document.addEventListener("fullscreenchange", redraw);
 
 let wordsAt = -Infinity;
+/** A truth that was there when the words were written before. */
+let compared = null;
 
 function frame(now) {
   requestAnimationFrame(frame);
@@ -176,6 +178,8 @@ function frame(now) {
   if (now - wordsAt >= WORDS_EVERY) {
     wordsAt = now;
     const { flags } = samples.latest;
+    if (compared) words.compare(samples, compared);
+    compared = shown.truth;
     words.show(samples, history, shown.status);
     words.hint(shown.status, picture.mode, samples.count);
     board.show(shown.status, { known: Boolean(flags & STATUS_KNOWN), notes: Boolean(flags & NOTES) });

@@ -38,7 +38,7 @@ export class Picture {
     this.eye = new Float64Array(3);
     this.frames = 0;
     this.lost = false;
-    this.gl = canvas.getContext("webgl2", { antialias: true, alpha: true, stencil: true, premultipliedAlpha: true });
+    this.gl = canvas.getContext("webgl2", { antialias: true, alpha: true, stencil: true });
     if (this.gl) this.build();
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault(); // or it would not come back
@@ -67,7 +67,9 @@ export class Picture {
         room: room(), signs: signs(), sheet, pointer,
       }).map(([name, shapes]) => [name, new Mesh(gl, shapes)]),
     );
-    this.textures = { white: white(gl), prints: texture(gl, board.prints()), letters: texture(gl, lettering()) };
+    this.textures = {
+      white: white(gl), prints: texture(gl, board.prints()), letters: texture(gl, lettering()),
+    };
     this.bare = gl.createVertexArray();
     gl.enable(gl.DEPTH_TEST);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
@@ -142,7 +144,8 @@ export class Picture {
       const [lens, camera] = [this.projections[name], this.views[name]];
       const aspect = half / canvas.height;
       // As much of the court is seen in a tall half as in a wide one.
-      const upright = aspect < 1 ? 2 * Math.atan(Math.tan(FIELD_OF_VIEW.stereo / 2) / Math.max(aspect, 0.6)) : FIELD_OF_VIEW.stereo;
+      const slope = Math.tan(FIELD_OF_VIEW.stereo / 2) / Math.min(1, Math.max(aspect, 0.6));
+      const upright = 2 * Math.atan(slope);
       view.frustumOfEye(lens, side, viewer.ipd, SCREEN, upright, aspect, 60, 90000);
       this.drawSky(camera, lens, light);
       this.drawGround(camera, lens, light, 1000, 60000, 0, 1);
@@ -155,8 +158,9 @@ export class Picture {
 
   /** Where a camera is: −Rᵀ t. */
   positionOf(camera) {
+    const [x, y, z] = camera.subarray(12, 15);
     for (let row = 0; row < 3; row += 1) {
-      this.eye[row] = -(camera[4 * row] * camera[12] + camera[4 * row + 1] * camera[13] + camera[4 * row + 2] * camera[14]);
+      this.eye[row] = -(camera[4 * row] * x + camera[4 * row + 1] * y + camera[4 * row + 2] * z);
     }
     return this.eye;
   }
@@ -221,9 +225,11 @@ export class Picture {
     this.under[0] = this.under[10] = end;
     this.under[13] = height;
     program.matrix("model", this.under);
-    for (const [name, value] of [["line", light.line], ["ground", light.ground], ["ring", ring], ["end", end], ["solid", solid]]) {
-      program.set(name, value);
-    }
+    program.set("line", light.line);
+    program.set("ground", light.ground);
+    program.set("ring", ring);
+    program.set("end", end);
+    program.set("solid", solid);
     gl.enable(gl.BLEND);
     gl.depthMask(solid === 1);
     this.meshes.sheet.draw();
@@ -247,7 +253,9 @@ export class Picture {
     const clip = [...point, 1];
     for (const m of [model, this.camera, this.lens]) {
       const [x, y, z, w] = clip;
-      for (let row = 0; row < 4; row += 1) clip[row] = m[row] * x + m[4 + row] * y + m[8 + row] * z + m[12 + row] * w;
+      for (let row = 0; row < 4; row += 1) {
+        clip[row] = m[row] * x + m[4 + row] * y + m[8 + row] * z + m[12 + row] * w;
+      }
     }
     if (clip[3] <= 0) return null;
     return [

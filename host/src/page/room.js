@@ -101,8 +101,8 @@ export function signs() {
   WORDS.forEach((_, i) => {
     const angle = (Math.PI / 2) * i;
     const [s, c] = [Math.sin(angle), Math.cos(angle)];
-    // Hung before the ring, facing the middle: its left is where a person's left is.
-    const [x, z] = [-s * (RADIUS - 345), -c * (RADIUS - 345)];
+    // Hung before the ring, which is round and they are flat, facing the middle: its left is where a person's left is.
+    const [x, z] = [-s * (RADIUS - 400), -c * (RADIUS - 400)];
     const corner = (side, y) => [x + side * c * 620, y, z - side * s * 620];
     const [top, bottom] = [i / 4, (i + 1) / 4];
     shapes.quad(

@@ -2,14 +2,12 @@
 
 import { unit } from "./view.js";
 
-/** Bits of a sample's flags; 0 to 7 are the frame's status (docs/wire-format.md). */
-export const REPEATED = 1;
+/** Bits of a sample's flags, of which 0 to 7 are the frame's status (docs/wire-format.md). */
 export const CLIPPED = 1 << 1;
 export const STILL = 1 << 2;
 export const COMPASS_SHIFT = 3;
 export const NOTES = 1 << 5;
 export const BIAS_MEASURED = 1 << 6;
-export const SKIPPED = 1 << 7;
 /** The bits above were said. */
 export const STATUS_KNOWN = 1 << 8;
 /** Time and sequence number are the device's. */

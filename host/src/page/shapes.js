@@ -1,5 +1,7 @@
 // Boxes, rods, balls: triangles with normals and colours, in millimetres.
 
+import { VERTEX } from "./gl.js";
+
 /** Collects the triangles of one mesh. `paint` and `put` hold until they are called again. */
 export class Shapes {
   constructor() {
@@ -32,7 +34,7 @@ export class Shapes {
   vertex(position, normal, place = [0, 0]) {
     const at = this.turned(position).map((value, i) => value + this.origin[i]);
     this.vertices.push(...at, ...this.turned(normal), ...this.colour, ...place);
-    return this.vertices.length / 12 - 1;
+    return this.vertices.length / VERTEX - 1;
   }
 
   triangles(...indices) {
@@ -95,7 +97,7 @@ export class Shapes {
   /** Around the origin. */
   ball(radius, sides = 20) {
     const rows = sides / 2;
-    const first = this.vertices.length / 12;
+    const first = this.vertices.length / VERTEX;
     for (let row = 0; row <= rows; row += 1) {
       const polar = (Math.PI * row) / rows;
       for (let i = 0; i <= sides; i += 1) {

@@ -39,8 +39,8 @@ export class Words {
     if (flags & flag.CLIPPED) this.clippedAt = performance.now();
   }
 
-  /** True orientation of the emulated sensor, against what the page has of that moment. */
-  truth(samples, { t, q }) {
+  /** How far the board is off the emulated sensor, whose truth comes before the sample of its moment. */
+  compare(samples, { t, q }) {
     const estimate = samples.at(t);
     if (estimate) this.off = { all: apart(estimate, q), tilt: tiltApart(estimate, q) };
   }
@@ -59,7 +59,10 @@ export class Words {
     this.losses(status, history);
     const shown = this.off && status.kind === "emulated";
     byId("truth-row").hidden = !shown;
-    if (shown) write("truth", `${number(this.off.all, 1)}°, tilt ${number(this.off.tilt, 1)}°`, this.off.tilt < 2 ? "good" : "warn");
+    if (shown) {
+      const { all, tilt } = this.off;
+      write("truth", `${number(all, 1)}°, tilt ${number(tilt, 1)}°`, tilt < 2 ? "good" : "warn");
+    }
   }
 
   flags(flags, flowing) {

@@ -79,7 +79,8 @@ export class Stream {
 
   take(data) {
     if (typeof data !== "string") {
-      if (!takeBatch(data, this.intake.sample)) this.intake.line("warning: a batch of samples that this page does not know; reload it");
+      const known = takeBatch(data, this.intake.sample);
+      if (!known) this.intake.line("warning: samples in a form that this page does not know: load it again");
       return;
     }
     let message;

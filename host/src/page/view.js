@@ -38,7 +38,7 @@ export function rotation(out, [w, x, y, z]) {
 }
 
 /** The head's orientation, if the board is taped to the headset turned round (figure 8): F q F⁻¹. */
-export function mounted(out, q, turnedAround) {
+function mounted(out, q, turnedAround) {
   const sign = turnedAround ? -1 : 1;
   out[0] = q[0];
   out[1] = sign * q[1];

@@ -32,6 +32,7 @@ pub const PARTS: &[Part] = parts![
     "icon.svg",
     "keys.js",
     "labels.js",
+    "layout.css",
     "latency.js",
     "main.js",
     "notice.js",

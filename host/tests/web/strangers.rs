@@ -2,11 +2,12 @@
 
 use std::io::{Read, Write};
 use std::net::{Ipv6Addr, TcpListener, TcpStream};
+use std::process::Command;
 
 use vrduino_host::web::page::PARTS;
 
 use crate::client::{a_while, dial, exchange, get, open};
-use crate::program::{Program, fails};
+use crate::program::{Program, fails, vrduino};
 
 /// A port that is not there: nothing is plugged in, whatever is plugged in here.
 const NOBODY: [&str; 2] = ["--port", "/dev/no-such-port"];
@@ -219,6 +220,25 @@ fn too_many_are_told_so_and_room_comes_back() {
         get(program.port, "/").status == 200
     });
     assert!(again, "room does not come back");
+}
+
+#[test]
+fn the_next_port_that_is_free_will_do_unless_one_is_named() {
+    let start = || {
+        let mut command = Command::new(vrduino());
+        Program::serve_at(command.args(["view", "--no-open"]).args(NOBODY))
+    };
+    let (first, second) = (start(), start());
+    assert!(
+        first.port < second.port,
+        "{} and {}",
+        first.port,
+        second.port
+    );
+    for program in [first, second] {
+        assert!((8080..8100).contains(&program.port), "{}", program.port);
+        assert_eq!(get(program.port, "/").status, 200);
+    }
 }
 
 #[test]

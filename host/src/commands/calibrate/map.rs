@@ -42,7 +42,7 @@ impl Map {
     }
 
     /// Of fields that were corrected.
-    pub(super) fn of(corrected: impl ExactSizeIterator<Item = Vector3<f32>>) -> Self {
+    pub fn of(corrected: impl ExactSizeIterator<Item = Vector3<f32>>) -> Self {
         let every = corrected.len() / MOST + 1;
         let seen = corrected
             .step_by(every)
