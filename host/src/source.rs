@@ -11,6 +11,7 @@ pub mod replay;
 
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 use crate::failure::Failure;
 pub use emulated::Emulation;
@@ -136,7 +137,7 @@ impl Listener {
     /// # Errors
     ///
     /// [`Gone`]: the source ends.
-    pub fn order_within(&self, span: std::time::Duration) -> Result<Option<Order>, Gone> {
+    pub fn order_within(&self, span: Duration) -> Result<Option<Order>, Gone> {
         match self.orders.recv_timeout(span) {
             Ok(order) => Ok(Some(order)),
             Err(mpsc::RecvTimeoutError::Timeout) => Ok(None),
@@ -149,10 +150,10 @@ impl Listener {
     /// # Errors
     ///
     /// [`Gone`]: the source ends.
-    pub fn wait(&self, span: std::time::Duration) -> Result<(), Gone> {
-        let until = std::time::Instant::now() + span;
+    pub fn wait(&self, span: Duration) -> Result<(), Gone> {
+        let until = Instant::now() + span;
         loop {
-            let left = until.saturating_duration_since(std::time::Instant::now());
+            let left = until.saturating_duration_since(Instant::now());
             match self.orders.recv_timeout(left) {
                 Ok(_) => {}
                 Err(mpsc::RecvTimeoutError::Timeout) => return Ok(()),
@@ -161,6 +162,9 @@ impl Listener {
         }
     }
 }
+
+/// What a source may take for the orders it has when it is left: as long as a board may take for them.
+const LAST_ORDERS: Duration = Duration::from_millis(1500);
 
 /// A source at work; it ends when this is dropped.
 #[derive(Debug)]
@@ -203,8 +207,12 @@ impl Drop for Source {
     fn drop(&mut self) {
         // Without anybody to give orders it ends, once it has carried out those it has.
         self.orders = None;
+        let until = Instant::now() + LAST_ORDERS;
         if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
+            // One that builds an image just now is not waited for.
+            while !thread.is_finished() && Instant::now() < until {
+                thread::sleep(Duration::from_millis(2));
+            }
         }
     }
 }
