@@ -1,7 +1,15 @@
 //! Ctrl-C: what is going on is brought to an end, not cut off.
 
-use std::sync::Arc;
+use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+/// The exit code of a program that a signal has ended (128 + SIGINT).
+const CUT_OFF: i32 = 130;
+
+/// Some programs signal the process and its group, which is once for the user.
+const ONCE: Duration = Duration::from_millis(500);
 
 /// Whether the user wants it to end.
 #[derive(Clone, Debug)]
@@ -9,14 +17,16 @@ pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
     /// From now on Ctrl-C, and being asked to end by the system, are noticed here. Once in a program.
+    /// Asked again, it ends at once.
     pub fn listen() -> Self {
         let flag = Arc::new(AtomicBool::new(false));
         let handler = Arc::clone(&flag);
+        let first = OnceLock::new();
         // Where it cannot be noticed it ends the program, as usual.
         let _ = ctrlc::set_handler(move || {
-            if handler.swap(true, Ordering::Relaxed) {
-                // Asked twice: at once.
-                std::process::exit(130);
+            handler.store(true, Ordering::Relaxed);
+            if first.get_or_init(Instant::now).elapsed() > ONCE {
+                process::exit(CUT_OFF);
             }
         });
         Self(flag)

@@ -1,16 +1,19 @@
 //! What happens to a recording that does not end as it was meant to.
 
 use std::fs;
-use std::io;
+use std::io::{self, Write};
 use std::process::Command;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use nalgebra::{UnitQuaternion, Vector3};
 use vrduino_host::recording::{Entry, Voice};
 
 use crate::fixture::{Scratch, entries, read, samples};
 use crate::program::{Program, vrduino};
-use crate::pty::PluggedIn;
+use crate::pty::{PluggedIn, Pty};
 
 /// Nothing here takes so long, even on a busy machine.
 const LIMIT: Duration = Duration::from_secs(120);
@@ -72,15 +75,12 @@ fn what_was_written_before_there_was_no_room_can_be_read() {
     let script = r#"trap '' XFSZ; ulimit -f 128; exec "$0" record --emulate --seconds 20 "$1""#;
     let mut shell = Command::new("bash");
     shell.args(["-c", script, env!("CARGO_BIN_EXE_vrduino"), file.path()]);
-    let ended = shell.output().expect("a shell");
-    let said = String::from_utf8_lossy(&ended.stderr);
-    assert_eq!(ended.status.code(), Some(5), "{said}");
-    assert!(said.contains("may not grow any further"), "{said}");
+    let ended = Program::spawn(&mut shell).end();
+    ended.expect(5).said("may not grow any further");
     let (entries, warning) = read(file.path());
     let count = samples(&entries).len();
     assert!(count > 200, "{count}");
-    let kept = format!("its {count} samples so far are kept");
-    assert!(said.contains(&kept), "{said}");
+    ended.said(&format!("its {count} samples so far are kept"));
     assert!(
         warning
             .expect("it is cut off")
@@ -137,6 +137,81 @@ fn a_board_that_goes_and_comes_back_is_one_recording() {
         let next = pair[0].sequence.map(|number| number.wrapping_add(1));
         assert_eq!(pair[1].sequence, next);
     }
+}
+
+/// The course's firmware says nothing of itself: nothing of it is left out.
+#[test]
+fn a_board_that_does_not_answer_is_recorded_from_its_first_sample_on() {
+    let file = Scratch::new("course.csv");
+    let Pty { mut device, path } = Pty::open();
+    let wanted = Arc::new(AtomicBool::new(true));
+    let flag = Arc::clone(&wanted);
+    let course = thread::spawn(move || {
+        // Angles by which they are known again; the first is 0.
+        for tick in 0_u32.. {
+            let half = f64::from(tick % 3000) * 1e-3;
+            let (w, y) = (half.cos(), half.sin());
+            let line = format!("QC {w:.3} 0.000 {y:.3} 0.000\n");
+            while device.write_all(line.as_bytes()).is_err() {
+                if !flag.load(Ordering::Relaxed) {
+                    return;
+                }
+                thread::sleep(Duration::from_millis(5));
+            }
+            thread::sleep(Duration::from_millis(5));
+            if !flag.load(Ordering::Relaxed) {
+                return;
+            }
+        }
+    });
+    let recorder = Program::start(&["record", "--port", &path, "--seconds", "4", file.path()]);
+    let code = recorder.end().code;
+    wanted.store(false, Ordering::Relaxed);
+    course.join().expect("it ends");
+    assert_eq!(code, Some(0));
+    let samples = samples(&entries(file.path()));
+    assert!(samples.len() > 100, "{}", samples.len());
+    let last = samples.len() - 1;
+    assert!(samples[last].arrival - samples[0].arrival >= 3.9);
+    for (tick, sample) in samples.iter().enumerate() {
+        assert_eq!(
+            (sample.sequence, sample.status, sample.delay),
+            (None, None, None)
+        );
+        assert_eq!(sample.is_first, tick == 0);
+        let angle = tick as f64 * 2e-3;
+        let turned = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angle);
+        assert!(
+            sample.orientation.angle_to(&turned) < 5e-3,
+            "{tick}: {sample:?}"
+        );
+    }
+}
+
+#[test]
+fn the_time_is_over_even_if_the_board_has_gone() {
+    let file = Scratch::new("gone.csv");
+    let board = PluggedIn::new(Vec::new);
+    let words = [
+        "record",
+        "--port",
+        &board.path,
+        "--seconds",
+        "8",
+        file.path(),
+    ];
+    let recorder = Program::start(&words);
+    wait("the first samples", || lines(&file) > 100);
+    drop(board);
+    let ended = recorder.end();
+    assert_eq!(ended.code, Some(0), "{}", ended.err);
+    assert!(ended.err.contains("is gone"), "{}", ended.err);
+    let count = samples(&entries(file.path())).len();
+    assert!(
+        ended.out.contains(&format!("{count} samples in")),
+        "{}",
+        ended.out
+    );
 }
 
 #[test]
