@@ -19,8 +19,14 @@ const TITLES = {
   waiting: "No board is plugged in",
   lost: "The board is gone",
   gone: "The program has ended",
-  ended: "The recording has ended",
+  ended: "The board has stopped",
 };
+
+function title(kind, state) {
+  if (kind === "emulated" && state === "waiting") return "The emulated board is starting";
+  if (kind === "replay" && state === "ended") return "The recording has ended";
+  return TITLES[state] ?? "Nothing to see yet";
+}
 
 export class Notice {
   constructor({ startEmulated, openSerial, closeSerial, replug }) {
@@ -38,10 +44,10 @@ export class Notice {
     write("state", word, mood);
     write("source", source || "");
     // A recording that has ended leaves its last picture to look at.
-    const over = state !== "connected" && state !== "opening" && !(state === "ended" && hasSamples);
+    const watched = kind === "replay" && state === "ended" && hasSamples;
+    const over = state !== "connected" && state !== "opening" && !watched;
     byId("notice").hidden = !over;
-    const starting = kind === "emulated" && state === "waiting";
-    write("notice-title", starting ? "The emulated board is starting" : TITLES[state] ?? "Nothing to see yet");
+    write("notice-title", title(kind, state));
     write("notice-text", message ? message[0].toUpperCase() + message.slice(1) : "");
     byId("start-emulated").hidden = !(kind === "none" || kind === "port") || state === "gone";
     byId("open-port").hidden = !hasSerial() || kind === "emulated";

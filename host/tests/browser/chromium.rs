@@ -5,10 +5,11 @@ use std::net::TcpStream;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
-use std::time::Duration;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use libtest_mimic::Failed;
-use tungstenite::WebSocket;
+use tungstenite::{Message, WebSocket};
 
 use super::tab::{Size, Tab};
 
@@ -40,6 +41,9 @@ const FLAGS: [&str; 13] = [
 
 /// An answer that takes longer will not come.
 const PATIENCE: Duration = Duration::from_secs(120);
+
+/// So long it may take to end.
+const FAREWELL: Duration = Duration::from_secs(10);
 
 /// One for all tests, started by the first.
 pub struct Chromium {
@@ -105,7 +109,7 @@ impl Chromium {
             Some((address.to_owned(), format!("/{path}")))
         });
         // What it says from now on is for nobody, but must not fill the pipe.
-        std::thread::spawn(move || lines.for_each(drop));
+        thread::spawn(move || lines.for_each(drop));
         let Some((address, path)) = found else {
             let _ = child.kill();
             return Err("Chromium ended before it said where its DevTools are".into());
@@ -127,14 +131,27 @@ impl Running {
         let (socket, _) = tungstenite::client(url, stream).map_err(|error| error.to_string())?;
         Ok(socket)
     }
+
+    /// Asked to, it ends its own processes, which would go on writing into the profile.
+    fn end(&mut self) {
+        if let Ok(mut socket) = self.connect(&self.path) {
+            let _ = socket.send(Message::text(r#"{"id": 1, "method": "Browser.close"}"#));
+            let _ = socket.read();
+        }
+        let until = Instant::now() + FAREWELL;
+        while matches!(self.child.try_wait(), Ok(None)) && Instant::now() < until {
+            thread::sleep(Duration::from_millis(20));
+        }
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+        let _ = std::fs::remove_dir_all(&self.profile);
+    }
 }
 
 impl Drop for Chromium {
     fn drop(&mut self) {
         if let Some(Ok(running)) = self.running.get_mut() {
-            let _ = running.child.kill();
-            let _ = running.child.wait();
-            let _ = std::fs::remove_dir_all(&running.profile);
+            running.end();
         }
     }
 }

@@ -26,7 +26,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 
 type Test = fn(&Chromium) -> Result<(), Failed>;
 
-const TESTS: [(&str, Test); 15] = [
+const TESTS: [(&str, Test); 16] = [
     ("the_board_turns_as_the_sensor_does", moving::turns),
     ("a_drag_turns_the_emulated_sensor", moving::by_hand),
     ("two_pages_show_the_same_board", moving::two_pages),
@@ -48,6 +48,7 @@ const TESTS: [(&str, Test); 15] = [
         "ten_minutes_at_a_kilohertz_take_no_memory",
         memory::ten_minutes,
     ),
+    ("a_hidden_page_piles_nothing_up", memory::hidden),
 ];
 
 const PICTURES: (&str, Test) = ("pictures_for_the_readme", pictures::for_the_readme);
