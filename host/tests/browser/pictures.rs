@@ -15,7 +15,12 @@ use super::tab::Size;
 const LARGEST: usize = 200_000;
 
 pub fn for_the_readme(chromium: &Chromium) -> Result<(), Failed> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/pictures");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let folder = match std::env::var_os("VRDUINO_PICTURES") {
+        // Tests run in their package's folder, and people in the workspace's.
+        Some(folder) => root.join(folder),
+        None => super::tab::pictures(),
+    };
     std::fs::create_dir_all(&folder)?;
     let program = Program::start(&["--emulate"])?;
     for (name, size, theme, mode) in [

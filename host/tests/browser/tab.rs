@@ -1,7 +1,7 @@
 //! One page in the browser: what a person does there, what they see, and what goes wrong meanwhile.
 
 use std::net::TcpStream;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -233,7 +233,7 @@ impl Tab {
 
     /// What the page looks like, kept in `target/pictures`; returns how many bytes it takes.
     pub fn picture(&mut self, name: &str) -> Result<usize, Failed> {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/pictures");
+        let folder = pictures();
         let png = self.png()?;
         std::fs::create_dir_all(&folder)?;
         std::fs::write(folder.join(name), &png)?;
@@ -258,4 +258,9 @@ impl Tab {
         }
         Err(format!("the browser reports errors: {:#?}", self.wrong).into())
     }
+}
+
+/// Where pictures are kept.
+pub fn pictures() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("../pictures")
 }
