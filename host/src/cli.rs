@@ -1,12 +1,9 @@
-//! The command line.
-
-mod source;
+//! The command line: the commands and their order.
 
 use clap::{Parser, Subcommand};
 
 use crate::commands::{calibrate, doctor, flash, list, monitor, record, replay, serve, view};
 use crate::failure::Kind;
-pub use source::{SourceArguments, speed};
 
 /// Shows, records and explains what a VRduino head tracker sends.
 ///

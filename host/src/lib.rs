@@ -32,6 +32,8 @@ pub mod interrupt;
 #[cfg(feature = "tui")]
 pub mod tui;
 
-pub mod cli;
+pub mod arguments;
 
 pub mod commands;
+
+pub mod cli;

@@ -21,8 +21,8 @@ use clap::Args;
 use vrduino::calibration::record::Record;
 use vrduino::sensor::magnetometer::SensitivityAdjustment;
 
+use crate::arguments::SourceArguments;
 use crate::board::{self, Acquaintance};
-use crate::cli::SourceArguments;
 use crate::failure::{Failure, Kind};
 use crate::interrupt::Interrupt;
 use crate::output::Output;

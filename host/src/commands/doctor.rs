@@ -16,8 +16,8 @@ mod watch;
 
 use clap::Args;
 
+use crate::arguments::SourceArguments;
 use crate::board;
-use crate::cli::SourceArguments;
 use crate::failure::{Failure, Kind};
 use crate::hub::{Hold, Hub};
 use crate::output::Output;

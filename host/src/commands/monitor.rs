@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
-use crate::cli::SourceArguments;
+use crate::arguments::SourceArguments;
 use crate::failure::Failure;
 use crate::hub::{Hold, Hub, State, Status, Subscription, Update};
 use crate::interrupt::Interrupt;

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::SourceArguments;
+use crate::arguments::SourceArguments;
 use crate::failure::Failure;
 use crate::hub::{Hold, Hub};
 use crate::interrupt::Interrupt;

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
-use crate::cli;
+use crate::arguments;
 use crate::failure::{Failure, Kind};
 use crate::interrupt::Interrupt;
 use crate::recording::{Format, Player, encode};
@@ -30,7 +30,7 @@ pub struct Arguments {
     /// A recording of `vrduino record`
     pub file: PathBuf,
     /// So many times as fast as it came
-    #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = cli::speed)]
+    #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = arguments::speed)]
     pub speed: f64,
     /// When it is over it begins again
     #[arg(long)]

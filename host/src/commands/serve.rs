@@ -15,7 +15,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use crate::cli::SourceArguments;
+use crate::arguments::SourceArguments;
 use crate::failure::{Failure, Kind};
 use crate::hub::{Hold, Hub, State, Subscription, Update};
 use crate::interrupt::Interrupt;

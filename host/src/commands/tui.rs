@@ -7,7 +7,7 @@ use clap::Args;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event};
 
-use crate::cli::SourceArguments;
+use crate::arguments::SourceArguments;
 use crate::failure::{Failure, Kind};
 use crate::hub::{Hold, Hub, Subscription};
 use crate::interrupt::Interrupt;

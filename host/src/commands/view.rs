@@ -13,7 +13,7 @@ use std::time::Duration;
 use clap::Args;
 use tungstenite::http::{Method, StatusCode};
 
-use crate::cli::SourceArguments;
+use crate::arguments::SourceArguments;
 use crate::failure::{Failure, Kind};
 use crate::hub::{Hub, Status};
 use crate::interrupt::Interrupt;
