@@ -14,7 +14,6 @@ use std::fs;
 use std::io::{Read, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
@@ -54,7 +53,7 @@ impl Bench {
         let path = std::env::var_os("PATH").unwrap_or_default();
         let folders = std::iter::once(self.0.clone()).chain(std::env::split_paths(&path));
         let path = std::env::join_paths(folders).expect("a path");
-        let mut command = Command::new(env!("CARGO_BIN_EXE_vrduino"));
+        let mut command = program::command();
         Program::spawn(command.arg("flash").args(words).env("PATH", path)).end()
     }
 }

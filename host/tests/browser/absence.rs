@@ -4,14 +4,14 @@ use libtest_mimic::Failed;
 
 use super::chromium::Chromium;
 use super::moving::START;
-use super::program::Program;
+use super::server::Server;
 
 const NOTICE: &str = "!document.getElementById('notice').hidden";
 const CLEAR: &str = "document.getElementById('notice').hidden";
 
 pub fn cable(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--emulate"])?;
-    let mut tab = chromium.open(&program.url)?;
+    let program = Server::view(&["--emulate"]);
+    let mut tab = chromium.open(&program.url())?;
     tab.until("samples arrive", "vrduino.count > 1000", START)?;
     // What would be gone if the page were loaded again.
     tab.eval("window.stayed = true")?;
@@ -38,8 +38,8 @@ pub fn cable(chromium: &Chromium) -> Result<(), Failed> {
 }
 
 pub fn no_board(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--port", "/dev/no-such-port"])?;
-    let mut tab = chromium.open(&program.url)?;
+    let program = Server::view(&["--port", "/dev/no-such-port"]);
+    let mut tab = chromium.open(&program.url())?;
     tab.until(
         "it says so",
         &format!("vrduino.status.state === 'waiting' && {NOTICE}"),
@@ -63,9 +63,9 @@ pub fn no_board(chromium: &Chromium) -> Result<(), Failed> {
 }
 
 pub fn no_program(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--emulate"])?;
-    let port = program.port().to_owned();
-    let mut tab = chromium.open(&program.url)?;
+    let program = Server::view(&["--emulate"]);
+    let port = program.port;
+    let mut tab = chromium.open(&program.url())?;
     // Its attempts are what the browser reports.
     tab.expect("ERR_CONNECTION_REFUSED");
     tab.until("samples arrive", "vrduino.count > 1000", START)?;
@@ -76,7 +76,7 @@ pub fn no_program(chromium: &Chromium) -> Result<(), Failed> {
         20,
     )?;
     let before = tab.eval("vrduino.count")?;
-    let again = Program::on_port(&port, &["--emulate"])?;
+    let again = Server::view_at(port, &["--emulate"]);
     let back = format!(
         "vrduino.status.state === 'connected' && {CLEAR} && vrduino.count > {before} + 1000"
     );

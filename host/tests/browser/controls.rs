@@ -4,14 +4,14 @@ use libtest_mimic::Failed;
 
 use super::chromium::Chromium;
 use super::moving::START;
-use super::program::Program;
+use super::server::Server;
 
 /// Bit of a sample's flags: the notes' estimator made it.
 const NOTES: u32 = 1 << 5;
 
 pub fn reach_the_board(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--emulate"])?;
-    let mut tab = chromium.open(&program.url)?;
+    let program = Server::view(&["--emulate"]);
+    let mut tab = chromium.open(&program.url())?;
     let told = "vrduino.count > 1000 && vrduino.status.estimator === 'default' && 'notes-alpha' in vrduino.status.settings";
     tab.until("the board has told its settings", told, START)?;
 
@@ -96,8 +96,8 @@ pub fn reach_the_board(chromium: &Chromium) -> Result<(), Failed> {
 }
 
 pub fn recenter(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--emulate"])?;
-    let mut tab = chromium.open(&program.url)?;
+    let program = Server::view(&["--emulate"]);
+    let mut tab = chromium.open(&program.url())?;
     tab.until(
         "the head has turned",
         "vrduino.count > 1000 && Math.abs(vrduino.angles[0]) > 20",

@@ -10,7 +10,7 @@ use vrduino::view::viewer::Viewer;
 
 use super::chromium::Chromium;
 use super::moving::{START, close_to, rotation};
-use super::program::Program;
+use super::server::Server;
 use super::tab::Tab;
 
 /// Planes of the page's lenses, and where the eyes' windows are one, in millimetres.
@@ -26,8 +26,8 @@ const PICTURE: &str = "(({ quaternion, left, right, leftLens, rightLens }) =>
     [...quaternion, ...left, ...right, ...leftLens, ...rightLens])(vrduino.picture)";
 
 pub fn matrices(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--emulate"])?;
-    let mut tab = chromium.open(&program.url)?;
+    let program = Server::view(&["--emulate"]);
+    let mut tab = chromium.open(&program.url())?;
     tab.until("samples arrive", "vrduino.count > 1000", START)?;
     tab.press("v")?;
     tab.until("both eyes are drawn", "vrduino.mode === 'stereo'", 5)?;

@@ -5,12 +5,12 @@ use serde_json::json;
 
 use super::chromium::Chromium;
 use super::moving::START;
-use super::program::Program;
+use super::server::Server;
 use super::tab::Size;
 
 pub fn lost_context(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--emulate"])?;
-    let mut tab = chromium.open(&program.url)?;
+    let program = Server::view(&["--emulate"]);
+    let mut tab = chromium.open(&program.url())?;
     tab.until("samples arrive", "vrduino.count > 1000", START)?;
     tab.eval(
         "window.loser = document.getElementById('picture').getContext('webgl2').getExtension('WEBGL_lose_context');
@@ -36,12 +36,12 @@ pub fn lost_context(chromium: &Chromium) -> Result<(), Failed> {
 }
 
 pub fn no_webgl(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--emulate"])?;
+    let program = Server::view(&["--emulate"]);
     let script = "const get = HTMLCanvasElement.prototype.getContext;
         HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
             return kind === 'webgl2' ? null : get.call(this, kind, ...rest);
         };";
-    let mut tab = chromium.open_as(&program.url, Size::DESK, script)?;
+    let mut tab = chromium.open_as(&program.url(), Size::DESK, script)?;
     tab.until(
         "it says so",
         "!document.getElementById('no-webgl').hidden",
@@ -57,8 +57,8 @@ pub fn no_webgl(chromium: &Chromium) -> Result<(), Failed> {
 }
 
 pub fn phone(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--emulate"])?;
-    let mut tab = chromium.open_as(&program.url, Size::PHONE, "")?;
+    let program = Server::view(&["--emulate"]);
+    let mut tab = chromium.open_as(&program.url(), Size::PHONE, "")?;
     tab.until("samples arrive", "vrduino.count > 1000", START)?;
     let fits =
         "document.documentElement.scrollWidth <= window.innerWidth && window.innerWidth === 390";

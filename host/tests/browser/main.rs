@@ -13,8 +13,13 @@ mod graphics;
 mod memory;
 mod moving;
 mod pictures;
+#[path = "../program/mod.rs"]
 mod program;
 mod serial;
+
+#[path = "../program/server.rs"]
+mod server;
+
 mod tab;
 mod wire;
 

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::bytes;
 use super::chromium::Chromium;
-use super::program::Program;
+use super::server::Server;
 use super::tab::{Size, Tab};
 
 const MINUTES: u32 = 10;
@@ -86,9 +86,9 @@ pub fn hidden(chromium: &Chromium) -> Result<(), Failed> {
 /// Bytes in use after each minute.
 fn feed(chromium: &Chromium, script: &str, minutes: u32) -> Result<Vec<f64>, Failed> {
     // A stream of its own would come in between.
-    let program = Program::start(&["--port", "/dev/no-such-port"])?;
+    let program = Server::view(&["--port", "/dev/no-such-port"]);
     // A small picture, of which many can be drawn.
-    let mut tab = chromium.open_as(&program.url, Size(500, 400, 1), script)?;
+    let mut tab = chromium.open_as(&program.url(), Size(500, 400, 1), script)?;
     tab.eval(&format!("{FEED} 0"))?;
     let mut heaps = Vec::new();
     for minute in 0..minutes {

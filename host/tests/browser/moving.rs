@@ -7,7 +7,7 @@ use vrduino::view::from_stream;
 use vrduino::view::gl_rotate::gl_rotate;
 
 use super::chromium::Chromium;
-use super::program::Program;
+use super::server::Server;
 
 /// The image may have to be built first.
 pub const START: u64 = 300;
@@ -35,8 +35,8 @@ const WATCH: &str = "(async () => {
 const TOLERANCE: f64 = 2.0;
 
 pub fn turns(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--emulate", "--motion", "turns"])?;
-    let mut tab = chromium.open(&program.url)?;
+    let program = Server::view(&["--emulate", "--motion", "turns"]);
+    let mut tab = chromium.open(&program.url())?;
     tab.until(
         "samples arrive",
         "vrduino.count > 1000 && vrduino.truth",
@@ -82,8 +82,8 @@ pub fn turns(chromium: &Chromium) -> Result<(), Failed> {
 }
 
 pub fn by_hand(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--emulate", "--motion", "hand"])?;
-    let mut tab = chromium.open(&program.url)?;
+    let program = Server::view(&["--emulate", "--motion", "hand"]);
+    let mut tab = chromium.open(&program.url())?;
     tab.until(
         "samples arrive",
         "vrduino.count > 1000 && vrduino.truth",
@@ -101,9 +101,9 @@ pub fn by_hand(chromium: &Chromium) -> Result<(), Failed> {
 }
 
 pub fn two_pages(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--emulate"])?;
-    let mut one = chromium.open(&program.url)?;
-    let mut other = chromium.open(&program.url)?;
+    let program = Server::view(&["--emulate"]);
+    let mut one = chromium.open(&program.url())?;
+    let mut other = chromium.open(&program.url())?;
     for tab in [&mut one, &mut other] {
         tab.until("samples arrive", "vrduino.count > 1000", START)?;
     }

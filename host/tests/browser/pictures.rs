@@ -8,7 +8,7 @@ use png::{Compression, Decoder, Encoder, Filter};
 
 use super::chromium::Chromium;
 use super::moving::START;
-use super::program::Program;
+use super::server::Server;
 use super::tab::Size;
 
 /// Bytes of a picture: large enough to read, small enough to keep.
@@ -22,13 +22,13 @@ pub fn for_the_readme(chromium: &Chromium) -> Result<(), Failed> {
         None => super::tab::pictures(),
     };
     std::fs::create_dir_all(&folder)?;
-    let program = Program::start(&["--emulate"])?;
+    let program = Server::view(&["--emulate"]);
     for (name, size, theme, mode) in [
         ("page.png", Size::DESK, "dark", "board"),
         ("stereo.png", Size::DESK, "light", "stereo"),
         ("phone.png", Size::PHONE, "dark", "board"),
     ] {
-        let mut tab = chromium.open_as(&program.url, size, "")?;
+        let mut tab = chromium.open_as(&program.url(), size, "")?;
         tab.theme(theme)?;
         tab.eval(&format!("document.getElementById('view-{mode}').click()"))?;
         // The charts are full, and the head is turned.

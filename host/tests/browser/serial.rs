@@ -5,7 +5,7 @@ use libtest_mimic::Failed;
 
 use super::bytes;
 use super::chromium::Chromium;
-use super::program::Program;
+use super::server::Server;
 use super::tab::Size;
 
 /// Frames that the port has to give.
@@ -66,11 +66,11 @@ const MOCK: &str = "(() => {
 })()";
 
 pub fn read(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Program::start(&["--port", "/dev/no-such-port"])?;
+    let program = Server::view(&["--port", "/dev/no-such-port"]);
     let mut stream = Vec::new();
     (0..FRAMES).for_each(|number| stream.extend(bytes::frame(number).as_ref()));
     let script = MOCK.replace("FRAMES", &BASE64.encode(&stream));
-    let mut tab = chromium.open_as(&program.url, Size::DESK, &script)?;
+    let mut tab = chromium.open_as(&program.url(), Size::DESK, &script)?;
     tab.until("it is offered", "vrduino.status.state === 'waiting' && !document.querySelector('#notice .open-serial').hidden", 20)?;
     tab.click("#notice .open-serial")?;
     let open = "vrduino.status.kind === 'serial' && vrduino.status.state === 'connected'";

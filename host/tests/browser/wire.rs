@@ -7,7 +7,7 @@ use vrduino::wire::decoder::{Decoder, Event};
 
 use super::bytes::{Random, mixture};
 use super::chromium::Chromium;
-use super::program::Program;
+use super::server::Server;
 use super::tab::Tab;
 
 /// The frame of docs/wire-format.md, a quarter turn to the left.
@@ -37,8 +37,8 @@ const TOLERANCE: f64 = 1e-12;
 
 pub fn decodes(chromium: &Chromium) -> Result<(), Failed> {
     // No samples of a stream are wanted, only the page's parts.
-    let program = Program::start(&["--port", "/dev/no-such-port"])?;
-    let mut tab = chromium.open(&program.url)?;
+    let program = Server::view(&["--port", "/dev/no-such-port"]);
+    let mut tab = chromium.open(&program.url())?;
 
     let frame: Vec<u8> = GOLDEN
         .split(' ')

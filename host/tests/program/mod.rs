@@ -2,19 +2,20 @@
 
 #![allow(dead_code)] // not every test asks for everything
 
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
 use std::time::{Duration, Instant};
 
 /// Nothing takes longer, the board's image to be built included.
-const PATIENCE: Duration = Duration::from_secs(300);
+pub const PATIENCE: Duration = Duration::from_secs(300);
 
 /// A program that runs; it is ended when this is dropped.
 pub struct Program {
     child: Child,
+    stdin: Option<ChildStdin>,
     lines: Receiver<String>,
     errors: Receiver<String>,
 }
@@ -25,8 +26,15 @@ pub struct Ended {
     pub code: Option<i32>,
     /// Standard output, what was not asked for before.
     pub out: String,
-    /// Standard error.
+    /// Standard error, likewise.
     pub err: String,
+}
+
+/// The program, to be set up.
+pub fn command() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vrduino"));
+    command.env("RUST_BACKTRACE", "0").stdin(Stdio::null());
+    command
 }
 
 /// Runs it to its end.
@@ -60,30 +68,21 @@ impl Ended {
 impl Program {
     /// Starts it with these arguments, and nothing to read.
     pub fn start(arguments: &[&str]) -> Self {
-        Self::spawn(Command::new(env!("CARGO_BIN_EXE_vrduino")).args(arguments))
+        Self::spawn(command().args(arguments))
     }
 
-    /// Starts it as it was set up, with nothing to read.
+    /// Starts it as it was set up.
     pub fn spawn(command: &mut Command) -> Self {
         let mut child = command
-            .env("RUST_BACKTRACE", "0")
-            .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
             .expect("the program starts");
-        let stdout = child.stdout.take().expect("piped");
-        let mut stderr = child.stderr.take().expect("piped");
-        let (said, errors) = mpsc::channel();
-        thread::spawn(move || {
-            let mut text = String::new();
-            let _ = stderr.read_to_string(&mut text);
-            let _ = said.send(text);
-        });
         Self {
+            stdin: child.stdin.take(),
+            lines: collect(child.stdout.take().expect("piped")),
+            errors: collect(child.stderr.take().expect("piped")),
             child,
-            lines: collect(stdout),
-            errors,
         }
     }
 
@@ -107,12 +106,23 @@ impl Program {
         }
     }
 
+    /// Waits until it says this on its standard error.
+    pub fn complains(&self, wanted: &str) {
+        let complaint = self.errors.iter().find(|line| line.contains(wanted));
+        assert!(complaint.is_some(), "it has ended without: {wanted}");
+    }
+
+    /// Types this.
+    pub fn type_in(&mut self, text: &str) {
+        let stdin = self.stdin.as_mut().expect("a pipe");
+        stdin.write_all(text.as_bytes()).expect("it is read");
+    }
+
     /// Presses Ctrl-C.
     #[cfg(unix)]
     pub fn interrupt(&self) {
-        let id = self.child.id().to_string();
-        let sent = Command::new("kill").args(["-INT", &id]).status();
-        assert!(sent.expect("kill").success());
+        let pid = rustix::process::Pid::from_child(&self.child);
+        rustix::process::kill_process(pid, rustix::process::Signal::INT).expect("it runs");
     }
 
     /// Waits for its end.
@@ -125,18 +135,19 @@ impl Program {
             assert!(began.elapsed() < PATIENCE, "it does not end");
             thread::sleep(Duration::from_millis(10));
         };
+        let rest = |lines: &Receiver<String>| lines.iter().map(|line| line + "\n").collect();
         Ended {
             code: status.code(),
-            out: self.lines.iter().map(|line| line + "\n").collect(),
-            err: self.errors.recv().unwrap_or_default(),
+            out: rest(&self.lines),
+            err: rest(&self.errors),
         }
     }
 }
 
-fn collect(stdout: ChildStdout) -> Receiver<String> {
+fn collect(pipe: impl Read + Send + 'static) -> Receiver<String> {
     let (said, lines) = mpsc::channel();
     thread::spawn(move || {
-        for line in BufReader::new(stdout).lines().map_while(Result::ok) {
+        for line in BufReader::new(pipe).lines().map_while(Result::ok) {
             if said.send(line).is_err() {
                 break;
             }

@@ -8,7 +8,7 @@ use tungstenite::handshake::HandshakeError;
 use tungstenite::http::Request;
 use tungstenite::{Error, Message, WebSocket};
 
-use crate::program::LIMIT;
+use crate::program::PATIENCE as LIMIT;
 
 /// What came back.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! The course's programs find on `vrduino serve` what they find on the course's server.
 
 use crate::client::{Stream, a_while, serve};
-use crate::program::Program;
+use crate::server::Server;
 
 /// As the `visualizer` page reads: words between single spaces, `parseFloat` of each.
 fn visualizer(line: &str) -> Option<[f64; 4]> {
@@ -41,7 +41,7 @@ fn orientations(stream: &mut Stream, count: usize) -> Vec<String> {
 
 #[test]
 fn every_program_of_the_course_reads_the_lines() {
-    let program = Program::serve(&["--emulate"]);
+    let program = Server::serve(&["--emulate"]);
     let lines = orientations(&mut serve(program.port), 300);
     for line in &lines {
         let q = visualizer(line).expect("numbers");
@@ -61,7 +61,7 @@ fn every_program_of_the_course_reads_the_lines() {
 
 #[test]
 fn several_pages_get_the_same_and_what_they_send_is_not_read() {
-    let program = Program::serve(&["--emulate", "--motion", "turns"]);
+    let program = Server::serve(&["--emulate", "--motion", "turns"]);
     let mut pages = [serve(program.port), serve(program.port)];
     for page in &mut pages {
         page.find("the stream", |message| {
@@ -94,7 +94,7 @@ fn several_pages_get_the_same_and_what_they_send_is_not_read() {
 
 #[test]
 fn what_is_typed_reaches_the_board() {
-    let mut program = Program::serve(&["--emulate", "--quiet"]);
+    let mut program = Server::serve(&["--emulate", "--quiet"]);
     // At once: it waits until the board is there.
     program.type_in("0");
     let mut page = serve(program.port);
@@ -124,7 +124,7 @@ fn what_is_typed_reaches_the_board() {
 /// Frames are lines for them all the same, and no more than they keep up with.
 #[test]
 fn a_binary_stream_is_made_lines_of() {
-    let mut program = Program::serve(&["--emulate", "--quiet"]);
+    let mut program = Server::serve(&["--emulate", "--quiet"]);
     let mut page = serve(program.port);
     orientations(&mut page, 1);
     program.type_in(":stream binary\n:decimals 5\n");
@@ -141,10 +141,10 @@ fn a_binary_stream_is_made_lines_of() {
 #[cfg(unix)]
 #[test]
 fn it_ends_with_a_good_bye() {
-    let mut program = Program::serve(&["--emulate"]);
+    let program = Server::serve(&["--emulate"]);
     let mut page = serve(program.port);
-    program.says("QC ");
+    program.until("QC ", |line| line.contains("QC "));
     program.interrupt();
     assert!(page.ends_with_good_bye());
-    assert_eq!(program.end().code(), Some(0));
+    program.end().expect(0);
 }

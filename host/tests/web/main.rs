@@ -7,7 +7,11 @@ mod course;
 
 mod page;
 
+#[path = "../program/mod.rs"]
 mod program;
+
+#[path = "../program/server.rs"]
+mod server;
 
 mod strangers;
 

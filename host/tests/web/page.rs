@@ -5,7 +5,7 @@ use serde_json::Value;
 use tungstenite::Message;
 
 use crate::client::{Stream, a_while, view};
-use crate::program::Program;
+use crate::server::Server;
 
 const HEADER: usize = 4;
 const RECORD: usize = 40;
@@ -90,7 +90,7 @@ fn samples(stream: &mut Stream, count: usize) -> Vec<Sample> {
 
 #[test]
 fn samples_come_whole_and_stand_as_the_sensor_does() {
-    let program = Program::view(&["--emulate"]);
+    let program = Server::view(&["--emulate"]);
     let mut page = view(program.port);
     let first = status(&mut page, "the first status", |_| true);
     assert_eq!(first["kind"], "emulated");
@@ -148,7 +148,7 @@ fn samples_come_whole_and_stand_as_the_sensor_does() {
 
 #[test]
 fn commands_reach_the_board_and_the_status_says_so() {
-    let program = Program::view(&["--emulate", "--motion", "still"]);
+    let program = Server::view(&["--emulate", "--motion", "still"]);
     let mut page = view(program.port);
     status(&mut page, "settings", |status| {
         status["settings"]["notes-time"].is_number()
@@ -180,7 +180,7 @@ fn commands_reach_the_board_and_the_status_says_so() {
 
 #[test]
 fn what_makes_no_sense_is_answered_and_not_passed_on() {
-    let program = Program::view(&["--emulate", "--motion", "still"]);
+    let program = Server::view(&["--emulate", "--motion", "still"]);
     let mut page = view(program.port);
     status(&mut page, "the board", |status| {
         status["state"] == "connected"
@@ -216,7 +216,7 @@ fn what_makes_no_sense_is_answered_and_not_passed_on() {
 
 #[test]
 fn the_cable_is_pulled_and_put_back() {
-    let program = Program::view(&["--emulate", "--motion", "still"]);
+    let program = Server::view(&["--emulate", "--motion", "still"]);
     let mut page = view(program.port);
     samples(&mut page, 100);
     page.say(r#"{"unplug":true}"#);
@@ -238,7 +238,7 @@ fn the_cable_is_pulled_and_put_back() {
 
 #[test]
 fn where_nothing_is_plugged_in_the_emulated_board_can_be_taken_and_left() {
-    let program = Program::view(&["--port", "/dev/no-such-port"]);
+    let program = Server::view(&["--port", "/dev/no-such-port"]);
     let mut page = view(program.port);
     let waiting = status(&mut page, "nothing", |status| {
         status["message"]
@@ -281,7 +281,7 @@ fn where_nothing_is_plugged_in_the_emulated_board_can_be_taken_and_left() {
 
 #[test]
 fn two_pages_see_the_same() {
-    let program = Program::view(&["--emulate"]);
+    let program = Server::view(&["--emulate"]);
     let mut pages = [view(program.port), view(program.port)];
     let [first, second] = pages.each_mut().map(|page| {
         status(page, "frames", |status| {
@@ -309,10 +309,10 @@ fn two_pages_see_the_same() {
 #[cfg(unix)]
 #[test]
 fn it_ends_with_a_good_bye() {
-    let mut program = Program::view(&["--emulate"]);
+    let program = Server::view(&["--emulate"]);
     let mut page = view(program.port);
     samples(&mut page, 10);
     program.interrupt();
     assert!(page.ends_with_good_bye());
-    assert_eq!(program.end().code(), Some(0));
+    program.end().expect(0);
 }

@@ -2,12 +2,12 @@
 
 use std::io::{Read, Write};
 use std::net::{Ipv6Addr, TcpListener, TcpStream};
-use std::process::Command;
 
 use vrduino_host::web::page::PARTS;
 
 use crate::client::{a_while, dial, exchange, get, open};
-use crate::program::{Program, fails, vrduino};
+use crate::program::{command, vrduino};
+use crate::server::Server;
 
 /// A port that is not there: nothing is plugged in, whatever is plugged in here.
 const NOBODY: [&str; 2] = ["--port", "/dev/no-such-port"];
@@ -24,7 +24,7 @@ fn status(port: u16, path: &str, host: &str, origin: Option<&str>) -> u16 {
 
 #[test]
 fn the_stream_of_the_page_is_for_the_page() {
-    let program = Program::view(&NOBODY);
+    let program = Server::view(&NOBODY);
     let port = program.port;
     let own = |host: &str| format!("http://{host}:{port}");
     for host in ["localhost", "127.0.0.1", "[::1]"] {
@@ -50,7 +50,7 @@ fn the_stream_of_the_page_is_for_the_page() {
 
 #[test]
 fn the_lines_are_for_pages_of_this_computer() {
-    let program = Program::serve(&NOBODY);
+    let program = Server::serve(&NOBODY);
     for origin in [
         None,
         Some("null"),
@@ -85,7 +85,7 @@ fn the_lines_are_for_pages_of_this_computer() {
 /// A foreign name that leads here (DNS rebinding) makes its page no page of ours.
 #[test]
 fn a_foreign_name_leads_nowhere() {
-    for program in [Program::view(&NOBODY), Program::serve(&NOBODY)] {
+    for program in [Server::view(&NOBODY), Server::serve(&NOBODY)] {
         let port = program.port;
         for path in ["/", "/stream"] {
             let origin = format!("http://evil.example:{port}");
@@ -101,7 +101,7 @@ fn a_foreign_name_leads_nowhere() {
 
 #[test]
 fn every_part_of_the_page_comes_as_what_it_is() {
-    let program = Program::view(&NOBODY);
+    let program = Server::view(&NOBODY);
     for part in PARTS {
         let path = format!("/{}", part.name);
         let answer = get(program.port, &path);
@@ -127,7 +127,7 @@ fn every_part_of_the_page_comes_as_what_it_is() {
 /// The page is in the network of version 6 as well, where this computer has one.
 #[test]
 fn both_loopbacks_serve() {
-    let program = Program::view(&NOBODY);
+    let program = Server::view(&NOBODY);
     if TcpListener::bind((Ipv6Addr::LOCALHOST, 0)).is_err() {
         // Then there is nobody to ask for it either.
         return;
@@ -182,7 +182,7 @@ fn what_is_no_request_is_answered_and_does_no_harm() {
         (long.as_bytes(), 431),
         (many.as_bytes(), 431),
     ];
-    let program = Program::view(&NOBODY);
+    let program = Server::view(&NOBODY);
     for (bytes, status) in table {
         let answer = exchange(dial(program.port), bytes).expect("an answer");
         let asked = String::from_utf8_lossy(&bytes[..bytes.len().min(60)]);
@@ -194,7 +194,7 @@ fn what_is_no_request_is_answered_and_does_no_harm() {
 
 #[test]
 fn who_asks_slowly_holds_up_nobody() {
-    let program = Program::view(&NOBODY);
+    let program = Server::view(&NOBODY);
     let silent: Vec<_> = (0..10).map(|_| dial(program.port)).collect();
     let mut slow = dial(program.port);
     slow.write_all(b"GET / HTTP/1.1\r\nHost: loc")
@@ -211,7 +211,7 @@ fn who_asks_slowly_holds_up_nobody() {
 
 #[test]
 fn too_many_are_told_so_and_room_comes_back() {
-    let program = Program::view(&NOBODY);
+    let program = Server::view(&NOBODY);
     let mut many: Vec<_> = (0..64).map(|_| dial(program.port)).collect();
     assert_eq!(get(program.port, "/").status, 503);
     many.truncate(60);
@@ -224,10 +224,7 @@ fn too_many_are_told_so_and_room_comes_back() {
 
 #[test]
 fn the_next_port_that_is_free_will_do_unless_one_is_named() {
-    let start = || {
-        let mut command = Command::new(vrduino());
-        Program::serve_at(command.args(["view", "--no-open"]).args(NOBODY))
-    };
+    let start = || Server::spawn(command().args(["view", "--no-open"]).args(NOBODY));
     let (first, second) = (start(), start());
     assert_ne!(first.port, second.port);
     for program in [first, second] {
@@ -240,12 +237,12 @@ fn the_next_port_that_is_free_will_do_unless_one_is_named() {
 fn a_port_that_is_taken_is_said_to_be() {
     let taken = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
     let port = taken.local_addr().expect("an address").port().to_string();
-    let (code, complaint) = fails(&["view", "--no-open", "--http-port", &port]);
-    assert_eq!(code, Some(6), "{complaint}");
-    assert!(complaint.contains(&format!("port {port} of this computer is taken")));
-    assert!(complaint.contains("--http-port"), "{complaint}");
-    let (code, complaint) = fails(&["serve", "--ws-port", &port]);
-    assert_eq!(code, Some(6), "{complaint}");
-    assert!(complaint.contains("node server.js"), "{complaint}");
-    assert!(complaint.contains("--ws-port"), "{complaint}");
+    vrduino(&["view", "--no-open", "--http-port", &port])
+        .expect(6)
+        .said(&format!("port {port} of this computer is taken"))
+        .said("--http-port");
+    vrduino(&["serve", "--ws-port", &port])
+        .expect(6)
+        .said("node server.js")
+        .said("--ws-port");
 }

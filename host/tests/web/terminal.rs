@@ -3,14 +3,14 @@
 use std::fs::File;
 use std::io::Write;
 use std::os::fd::{AsFd, OwnedFd};
-use std::process::Command;
 
 use rustix::fs::{Mode, OFlags, open};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{LocalModes, tcgetattr};
 
 use crate::client::serve;
-use crate::program::{Program, vrduino};
+use crate::program::command;
+use crate::server::Server;
 
 /// What a person types on, and what the program reads from.
 fn terminal() -> (File, OwnedFd) {
@@ -32,13 +32,13 @@ fn keys_work_at_once_and_the_terminal_is_left_as_it_was() {
     let before = modes(&stdin);
     assert!(before.contains(LocalModes::ICANON | LocalModes::ECHO));
     let own = stdin.try_clone().expect("another");
-    let mut program = Program::serve_at(
-        Command::new(vrduino())
+    let program = Server::spawn(
+        command()
             .args(["serve", "--emulate", "--ws-port", "0"])
             .stdin(own),
     );
     let mut page = serve(program.port);
-    program.says("QC ");
+    program.until("QC ", |line| line.contains("QC "));
     assert!(
         !modes(&stdin).contains(LocalModes::ICANON),
         "keys come at once"
@@ -64,10 +64,10 @@ fn keys_work_at_once_and_the_terminal_is_left_as_it_was() {
     });
     person.write_all(b"d").expect("typed");
     program.complains("printing what the board sends");
-    program.says("nReads/sec");
+    program.until("nReads/sec", |line| line.contains("nReads/sec"));
     // Ctrl-C is a key like any other here.
     person.write_all(b"\x03").expect("typed");
     assert!(page.ends_with_good_bye());
-    assert_eq!(program.end().code(), Some(0));
+    program.end().expect(0);
     assert_eq!(modes(&stdin), before);
 }
