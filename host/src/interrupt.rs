@@ -26,6 +26,7 @@ impl Interrupt {
         let _ = ctrlc::set_handler(move || {
             handler.store(true, Ordering::Relaxed);
             if first.get_or_init(Instant::now).elapsed() > ONCE {
+                give_terminal_back();
                 process::exit(CUT_OFF);
             }
         });
@@ -35,5 +36,13 @@ impl Interrupt {
     /// Whether it has come.
     pub fn has_come(&self) -> bool {
         self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// As it was before keys came one by one.
+fn give_terminal_back() {
+    #[cfg(feature = "tui")]
+    if ratatui::crossterm::terminal::is_raw_mode_enabled().is_ok_and(|is_raw| is_raw) {
+        ratatui::restore();
     }
 }

@@ -29,7 +29,7 @@ Examples:
   vrduino plot desk.csv                        a picture of it
   vrduino view --replay desk.csv               see it again
 
-What is recorded is on the disk within a second. docs/recordings.md tells what stands in the file.";
+What is recorded is in the file within a second, once the board has said who it is. docs/recordings.md tells what stands in the file.";
 
 /// What is asked for.
 #[derive(Clone, Debug, Args)]
@@ -76,13 +76,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let outcome = session.run(&hub, &updates, &interrupt);
     // The board streams as before while the rest is done.
     drop(hub);
+    session.catch_up(&updates);
     let tally = session.end();
     if !writer.has_begun() {
         writer.abandon();
         return outcome.and(tally.map(drop));
     }
     if writer.has_failed() {
-        return outcome;
+        return outcome.and(tally.map(drop));
     }
     let told = tally.and_then(|tally| {
         let bytes = target.convert(writer.bytes())?;

@@ -3,6 +3,8 @@
 //! A board whose program is another than ours takes single letters for keys (`b` measures its bias, `r`
 //! turns it round), so it is asked something that holds none of them before anything else: `:help`.
 
+mod answer;
+
 use std::collections::VecDeque;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
@@ -21,6 +23,9 @@ const ATTEMPTS: u32 = 5;
 const LEFT_ALONE: Duration = Duration::from_secs(5);
 
 const WHO: &str = ":help";
+
+/// Questions that may wait: a page that asks faster than a board answers is not heard.
+const WAITING: usize = 200;
 
 /// What somebody wants of the board.
 #[derive(Debug)]
@@ -110,13 +115,13 @@ impl Conversation {
 
     /// Takes a wish.
     pub(super) fn wish(&mut self, wish: Wish) {
-        match wish {
-            Wish::Order(order) => self.orders.push(order),
-            Wish::Say(line) => self.waiting.push_back(Question::own(line)),
-            Wish::Ask(line, reply) => self.waiting.push_back(Question {
-                line,
-                reply: Some(reply),
-            }),
+        let (line, reply) = match wish {
+            Wish::Order(order) => return self.orders.push(order),
+            Wish::Say(line) => (line, None),
+            Wish::Ask(line, reply) => (line, Some(reply)),
+        };
+        if self.waiting.len() < WAITING {
+            self.waiting.push_back(Question { line, reply });
         }
     }
 
@@ -169,11 +174,15 @@ impl Conversation {
 
     /// A line has come.
     pub(super) fn hear(&mut self, line: &str) {
-        let answer = match line.strip_prefix("OK ") {
-            Some(_) if !self.listens => return,
-            Some(answer) => Ok(answer.to_owned()),
-            None if line.starts_with("ERR ") => Err(line.to_owned()),
-            None => return,
+        if !self.listens && line.starts_with("OK ") {
+            return;
+        }
+        let Some((question, _)) = &self.asked else {
+            return;
+        };
+        // One that comes too late, or from another program, answers nothing.
+        let Some(answer) = answer::to(&question.line, line) else {
+            return;
         };
         let Some((question, _)) = self.asked.take() else {
             return;
@@ -248,5 +257,58 @@ impl Conversation {
             orders.push(Order::Send(lines.into_bytes()));
         }
         orders
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is typed to a board that says these lines, one after another.
+    fn typed(lines: &[&str]) -> String {
+        let mut conversation = Conversation::new(Some("binary"));
+        conversation.begin(true);
+        let mut orders = conversation.orders();
+        for line in lines {
+            conversation.hear(line);
+            orders.extend(conversation.orders());
+        }
+        orders.extend(conversation.farewell());
+        let bytes = orders.into_iter().flat_map(|order| match order {
+            Order::Send(bytes) => bytes,
+            other => panic!("{other:?}"),
+        });
+        String::from_utf8(bytes.collect())
+            .expect("text")
+            .replace("\n\n", "\n")
+    }
+
+    const VERBS: &str = "OK verbs: help version";
+
+    #[test]
+    fn a_board_is_left_as_it_was_found() {
+        let all = typed(&[VERBS, "OK stream timed every 7", "OK stream binary every 1"]);
+        assert_eq!(
+            all,
+            "\n:help\n:stream\n:stream binary\n:version\n:stream timed\n:every 7\n"
+        );
+    }
+
+    #[test]
+    fn an_answer_that_comes_late_is_not_taken_for_another() {
+        let all = typed(&[VERBS, VERBS, "OK stream timed every 7", VERBS]);
+        assert_eq!(
+            all,
+            "\n:help\n:stream\n:stream binary\n:stream timed\n:every 7\n"
+        );
+    }
+
+    /// Their letters are keys of other programs.
+    #[test]
+    fn another_program_is_not_known_by_its_errors() {
+        assert_eq!(
+            typed(&["ERR no SD card", "OK", "OK ready", "ERR: x"]),
+            "\n:help\n"
+        );
     }
 }

@@ -86,6 +86,7 @@ fn send(link: &mut dyn Link, mut bytes: &[u8]) -> io::Result<()> {
     let until = Instant::now() + SENDING;
     while !bytes.is_empty() {
         match link.write(bytes) {
+            Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
             Ok(count) => bytes = &bytes[count..],
             Err(error) if is_patient(&error) && Instant::now() < until => {}
             Err(error) => return Err(error),

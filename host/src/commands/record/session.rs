@@ -23,6 +23,9 @@ const SILENCE: Duration = Duration::from_secs(1);
 /// Beyond the seconds that are asked for, for a board that starts.
 const FIRST_SAMPLE: Duration = Duration::from_secs(30);
 
+/// Lines that are kept until the first sample comes.
+const WAITING: usize = 10_000;
+
 /// Records.
 #[derive(Debug)]
 pub struct Session<'a> {
@@ -68,15 +71,10 @@ impl<'a> Session<'a> {
         interrupt: &Interrupt,
     ) -> Result<(), Failure> {
         while !interrupt.has_come() {
-            match updates.next(Duration::from_millis(50)) {
-                Some(Update::Stream(items)) => {
-                    for item in items.iter() {
-                        self.assembly.take(item, &mut self.entries);
-                    }
-                }
-                Some(Update::Status(status)) => self.look_at(&status),
-                Some(Update::Ended(result)) => return result,
-                Some(Update::Bytes(_) | Update::Truth(_)) | None => {}
+            if let Some(update) = updates.next(Duration::from_millis(50))
+                && let Some(end) = self.take(update)
+            {
+                return end;
             }
             if self.has_begun(hub)? {
                 self.write()?;
@@ -89,6 +87,38 @@ impl<'a> Session<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Takes what has come and waits; how the stream has ended, if it has.
+    fn take(&mut self, update: Update) -> Option<Result<(), Failure>> {
+        match update {
+            Update::Stream(items) => {
+                for item in items.iter() {
+                    self.assembly.take(item, &mut self.entries);
+                }
+                self.forget_what_has_no_samples();
+            }
+            Update::Status(status) => self.look_at(&status),
+            Update::Ended(result) => return Some(result),
+            Update::Bytes(_) | Update::Truth(_) => {}
+        }
+        None
+    }
+
+    /// What came before the source was left, and waits because the file is slow.
+    pub fn catch_up(&mut self, updates: &Subscription) {
+        while let Some(update) = updates.next(Duration::ZERO) {
+            if self.take(update).is_some() {
+                break;
+            }
+        }
+    }
+
+    /// A device that sends lines and never a sample is no board: of them the newest are kept.
+    fn forget_what_has_no_samples(&mut self) {
+        if !self.writer.has_begun() && self.entries.len() > WAITING && !self.has_samples() {
+            self.entries.drain(..WAITING / 2);
+        }
     }
 
     /// Brings the file to its end, if it takes any more.
