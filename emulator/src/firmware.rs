@@ -66,6 +66,14 @@ pub fn build(options: BuildOptions) -> Result<PathBuf, BuildError> {
     }
 }
 
+/// Whether there is an image from before, of these sources or of older ones.
+pub fn is_built() -> bool {
+    target_dir().is_ok_and(|folder| {
+        let image = folder.join(TARGET).join(PROFILE).join(TRACKER_PROGRAM);
+        image.is_file()
+    })
+}
+
 /// Builds all programs of `package` and returns the folder of their ELF files.
 ///
 /// # Errors

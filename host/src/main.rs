@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser};
 use vrduino_host::cli::{Arguments, Command};
 use vrduino_host::commands;
-use vrduino_host::failure::Failure;
+use vrduino_host::failure::{Failure, Kind};
 
 fn main() -> ExitCode {
     let result = match &Arguments::parse().command {
@@ -23,10 +23,7 @@ fn main() -> ExitCode {
         Command::Calibrate(arguments) => commands::calibrate::run(arguments),
         Command::Flash(arguments) => commands::flash::run(arguments),
         Command::Doctor(arguments) => commands::doctor::run(arguments),
-        Command::Completions { shell } => {
-            complete(*shell);
-            Ok(())
-        }
+        Command::Completions { shell } => complete(*shell),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -40,11 +37,16 @@ fn say(failure: &Failure) -> ExitCode {
     failure.exit_code()
 }
 
-fn complete(shell: clap_complete::Shell) {
-    clap_complete::generate(
-        shell,
-        &mut Arguments::command(),
-        "vrduino",
-        &mut io::stdout(),
-    );
+fn complete(shell: clap_complete::Shell) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "vrduino", &mut script);
+    let mut output = io::stdout().lock();
+    match output.write_all(&script).and_then(|()| output.flush()) {
+        // Whoever reads it may have seen enough.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            let sentence = format!("standard output cannot be written to: {error}");
+            Err(Failure::new(Kind::File, sentence))
+        }
+        _ => Ok(()),
+    }
 }

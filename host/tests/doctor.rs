@@ -155,7 +155,7 @@ mod on_a_port {
     fn another_program_is_quoted() {
         stranger(b"T=21.5 degC\r\n")
             .expect(1)
-            .said("✗ its program is another one; it says `T=21.5 degC`")
+            .said("✗ nothing of the tracker's runs there; it says `T=21.5 degC`")
             .said("vrduino flash");
     }
 

@@ -17,6 +17,7 @@ use crate::arguments::SourceArguments;
 use crate::failure::{Failure, Kind};
 use crate::hub::{Hub, Status};
 use crate::interrupt::Interrupt;
+use crate::recording::Reader;
 use crate::source::Choice;
 use crate::web::http::{self, Incoming, Response};
 use crate::web::origin::{self, Origin};
@@ -65,8 +66,12 @@ The page can be opened as often as you like, on this computer only. Ctrl-C ends 
 /// There is no port for it.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let interrupt = Interrupt::listen();
-    let server = bind(arguments.http_port)?;
     let choice = arguments.source.choice();
+    if let Choice::Replay(replay) = &choice {
+        // What cannot be played need not be served.
+        Reader::open(&replay.path)?;
+    }
+    let server = bind(arguments.http_port)?;
     let site = Site {
         hub: Hub::start(choice.clone(), Some("binary")),
         choice,

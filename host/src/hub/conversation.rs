@@ -24,6 +24,9 @@ const LEFT_ALONE: Duration = Duration::from_secs(5);
 
 const WHO: &str = ":help";
 
+/// What a board streams after power-on.
+const USUAL: &str = "stream text every 10";
+
 /// Questions that may wait: a page that asks faster than a board answers is not heard.
 const WAITING: usize = 200;
 
@@ -195,7 +198,11 @@ impl Conversation {
         if let (":stream", Ok(answer)) = (question.line.as_str(), &answer)
             && question.reply.is_none()
         {
-            self.before.get_or_insert_with(|| answer.clone());
+            // Frames are what a program has left that was cut off: nobody reads them by chance.
+            let frames = ["stream binary", "stream counts"];
+            let left = frames.iter().any(|frame| answer.starts_with(frame));
+            let found = if left { USUAL } else { answer };
+            self.before.get_or_insert_with(|| found.to_owned());
         }
         if answer.is_ok() {
             self.ask_what_changed(&question.line);
@@ -241,7 +248,7 @@ impl Conversation {
         }
     }
 
-    /// The board is left as it was found.
+    /// The board is left as it was found; one that was left in frames, as it is after power-on.
     pub(super) fn farewell(&mut self) -> Vec<Order> {
         let mut orders = std::mem::take(&mut self.orders);
         if let Some(before) = self.before.take() {
@@ -292,6 +299,12 @@ mod tests {
             all,
             "\n:help\n:stream\n:stream binary\n:version\n:stream timed\n:every 7\n"
         );
+    }
+
+    #[test]
+    fn one_that_was_left_in_frames_is_put_back() {
+        let all = typed(&[VERBS, "OK stream binary every 1"]);
+        assert!(all.ends_with(":stream text\n:every 10\n"), "{all}");
     }
 
     #[test]

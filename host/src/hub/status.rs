@@ -107,7 +107,7 @@ impl Status {
     /// The board does not answer; whether that is news.
     pub(super) fn estrange(&mut self) -> bool {
         let news = self.trouble.is_none();
-        let sentence = "the board does not answer as vrduino does: its program is another one, so it is sent keys but no settings (`vrduino flash` changes that)";
+        let sentence = "nothing answers as vrduino does: another program runs on the board, or this is not its port (`vrduino list`); it is sent keys but no settings";
         self.trouble
             .get_or_insert_with(|| Failure::new(failure::Kind::Stream, sentence));
         news

@@ -119,10 +119,12 @@ fn prepare(emulation: &Emulation, listener: &mut Listener) -> Result<Result<Imag
     let path = match &emulation.image {
         Some(path) => path.clone(),
         None => {
-            listener.tell(Event::Waiting(Failure::new(
-                Kind::Computer,
-                "the board's image is being built, which takes a minute the first time",
-            )))?;
+            let sentence = if firmware::is_built() {
+                "the emulated board is switched on"
+            } else {
+                "the board's image is being built, which takes a minute the first time"
+            };
+            listener.tell(Event::Waiting(Failure::new(Kind::Computer, sentence)))?;
             match firmware::build(BuildOptions { quiet: true }) {
                 Ok(path) => path,
                 Err(error) => return Ok(Err(Failure::new(Kind::Computer, error.to_string()))),

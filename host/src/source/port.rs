@@ -117,6 +117,8 @@ fn open(name: Option<&str>) -> Result<(Box<dyn Link>, String), Failure> {
         return Ok((Box::new(dial(address)?), name));
     }
     let mut port = open_at(&name, BAUD)?;
+    // What was sent to nobody would be taken for the newest.
+    let _ = port.clear(serialport::ClearBuffer::Input);
     // Some boards and systems wait for it before they send.
     let _ = port.write_data_terminal_ready(true);
     Ok((Box::new(port), name))

@@ -29,16 +29,16 @@ pub fn look(seen: &Seen, report: &mut Report) -> bool {
         report.good("its program is the tracker's");
         return true;
     }
-    let flash = "put the tracker on it with `vrduino flash`: it sends the same lines, and more";
+    let flash = "if this is the board, put the tracker on it with `vrduino flash`; if not, `vrduino list` shows the other ports";
     if begins(&["QC ", "EA ", "GYR", "ACC", "FLAT "]) || seen.orientations > 0 {
         report.doubt(
             "its program sends the course's lines and answers no `:version`: the course's own firmware, or another that speaks like it",
-            format!("what needs no answers works with it (view, serve, record)\n{flash}"),
+            "what needs no answers works with it (view, serve, record)\nput the tracker on it with `vrduino flash`: it sends the same lines, and more",
         );
     } else if let Some(line) = seen.lines.iter().find(|line| !line.trim().is_empty()) {
         let line: String = line.chars().take(60).collect();
         report.bad(
-            format!("its program is another one; it says `{line}`"),
+            format!("nothing of the tracker's runs there; it says `{line}`"),
             flash,
         );
     } else if seen.bytes > 0 {

@@ -20,8 +20,9 @@ const INTRODUCTION: f64 = 3.0;
 /// Without any sample for so long the stream's own clock tells nothing about the time.
 const SILENCE: Duration = Duration::from_secs(1);
 
-/// Beyond the seconds that are asked for, for a board that starts.
-const FIRST_SAMPLE: Duration = Duration::from_secs(30);
+/// Beyond the seconds that are asked for, for a board that starts, and for an image that has to be built first.
+const FIRST_SAMPLE: Duration = Duration::from_secs(5);
+const FIRST_OF_AN_IMAGE: Duration = Duration::from_secs(300);
 
 /// Lines that are kept until the first sample comes.
 const WAITING: usize = 10_000;
@@ -239,7 +240,11 @@ impl<'a> Session<'a> {
         };
         let limit = Duration::from_secs_f64(seconds);
         let Some(first) = self.first else {
-            return match self.began.elapsed() > limit + FIRST_SAMPLE {
+            let grace = match self.status.kind {
+                Some(source::Kind::Emulated) => FIRST_OF_AN_IMAGE,
+                _ => FIRST_SAMPLE,
+            };
+            return match self.began.elapsed() > limit + grace {
                 true => Err(self.nothing()),
                 false => Ok(false),
             };
@@ -252,9 +257,12 @@ impl<'a> Session<'a> {
 
     /// Why no sample has come.
     fn nothing(&self) -> Failure {
-        let sentence =
-            "nothing is recorded: no sample has come (`vrduino doctor` looks for the reason)";
-        let reason = self.status.trouble.clone();
-        reason.unwrap_or_else(|| Failure::new(Kind::Stream, sentence))
+        match &self.status.trouble {
+            Some(trouble) if self.status.state != State::Connected => trouble.clone(),
+            _ => Failure::new(
+                Kind::Stream,
+                "nothing is recorded: no orientation has come. Is it the right port (`vrduino list`), and is vrduino on the board (`vrduino doctor`)?",
+            ),
+        }
     }
 }
