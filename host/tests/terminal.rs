@@ -4,6 +4,9 @@
 
 mod program;
 
+#[path = "pty/terminal.rs"]
+mod pty;
+
 use std::fs::File;
 use std::io::{ErrorKind, Read, Write};
 use std::os::fd::OwnedFd;
@@ -11,8 +14,8 @@ use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
 use program::Program;
-use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
-use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use pty::Terminal;
+use rustix::fs::{OFlags, fcntl_setfl};
 use rustix::termios::{LocalModes, Winsize, tcgetattr, tcsetwinsize};
 
 /// Nothing here takes longer, the image to be built included.
@@ -31,11 +34,10 @@ struct Seat {
 
 impl Seat {
     fn take(arguments: &[&str]) -> Self {
-        let user = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a pseudo-terminal");
-        grantpt(&user).expect("granted");
-        unlockpt(&user).expect("unlocked");
-        let path = ptsname(&user, Vec::new()).expect("a name");
-        let terminal = open(path, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).expect("opens");
+        let Terminal {
+            person: user,
+            program: terminal,
+        } = Terminal::open();
         let size = Winsize {
             ws_row: 24,
             ws_col: 80,
@@ -54,7 +56,7 @@ impl Seat {
             .spawn()
             .expect("the program starts");
         Self {
-            user: user.into(),
+            user,
             terminal,
             child,
             seen: Vec::new(),

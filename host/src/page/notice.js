@@ -22,6 +22,12 @@ const TITLES = {
   ended: "The board has stopped",
 };
 
+function wordAndMood(kind, state) {
+  // Its image may have to be built first.
+  if (kind === "emulated" && state === "waiting") return ["starting", "quiet"];
+  return STATES[state] ?? [state, "quiet"];
+}
+
 function title(kind, state) {
   if (kind === "emulated" && state === "waiting") return "The emulated board is starting";
   if (kind === "replay" && state === "ended") return "The recording has ended";
@@ -40,7 +46,7 @@ export class Notice {
   }
 
   show({ kind, state, source, message }, hasSamples) {
-    const [word, mood] = STATES[state] ?? [state, "quiet"];
+    const [word, mood] = wordAndMood(kind, state);
     write("state", word, mood);
     write("source", source || "");
     // A recording that has ended leaves its last picture to look at.
@@ -49,7 +55,8 @@ export class Notice {
     byId("notice").hidden = !over;
     write("notice-title", title(kind, state));
     write("notice-text", message ? message[0].toUpperCase() + message.slice(1) : "");
-    byId("start-emulated").hidden = !(kind === "none" || kind === "port") || state === "gone";
+    const startable = kind === "none" || kind === "port" || (kind === "emulated" && state === "ended");
+    byId("start-emulated").hidden = !startable || state === "gone";
     byId("open-port").hidden = !hasSerial() || kind === "emulated";
     byId("replug").hidden = !(kind === "emulated" && state === "lost");
     byId("close-serial").hidden = kind !== "serial";

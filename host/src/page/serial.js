@@ -14,6 +14,8 @@ const MICROS = 2 ** 32;
  */
 const WHO = "\n:help";
 const ATTEMPTS = 5;
+/** So long the board may take, in milliseconds, to hear the last that is said to it. */
+const FAREWELL = 500;
 const SETTINGS = [":estimator", ":get tilt-time", ":get notes-alpha"];
 
 export const hasSerial = () => "serial" in navigator;
@@ -25,10 +27,14 @@ export class SerialBoard {
     this.writer = null;
     this.reader = null;
     this.ended = null;
+    /** What the board streamed before it was asked for frames, as `timed every 7`. */
+    this.before = null;
     this.latency = new Latency();
     this.latest = { message: "", state: "waiting" };
     if (!hasSerial()) return;
-    navigator.serial.addEventListener("connect", () => this.again());
+    navigator.serial.addEventListener("connect", ({ target }) => this.again(target));
+    // A page that goes cannot wait: this reaches the board if the port takes it at once.
+    addEventListener("pagehide", () => this.giveBack());
     setInterval(() => this.tick(), 1000);
   }
 
@@ -65,6 +71,7 @@ export class SerialBoard {
     this.latency.restart();
     this.known = false;
     this.attempts = 0;
+    this.before = null;
     this.settings = {};
     this.estimator = null;
     this.restarts = 0;
@@ -99,22 +106,35 @@ export class SerialBoard {
   }
 
   /** A port that was allowed before has come back. */
-  async again() {
+  async again(port) {
     if (!this.port || this.writer) return;
-    const [port] = await navigator.serial.getPorts();
-    if (port) await this.open(port).catch((error) => this.intake.line(`error: ${error.message}`));
+    await this.open(port).catch((error) => this.intake.line(`error: ${error.message}`));
+  }
+
+  /** The board is left as it was found. */
+  giveBack() {
+    if (!this.writer || !this.before) return;
+    const [format, , every] = this.before.split(" ");
+    this.before = null;
+    this.send(`\n:stream ${format}\n:every ${every}`);
   }
 
   async close() {
     const { port, writer, reader } = this;
+    this.giveBack();
     this.port = null;
     this.writer = null;
     if (!writer) return;
-    writer.releaseLock();
-    // A port that is being read does not close.
     const over = new Promise((done) => {
       this.ended = done;
     });
+    // A port that closes forgets what it has not sent yet; its stream, closed before, sends it.
+    const late = new Promise((done) => {
+      setTimeout(done, FAREWELL);
+    });
+    await Promise.race([writer.close().catch(() => {}), late]);
+    writer.releaseLock();
+    // A port that is being read does not close.
     await reader.cancel().catch(() => {});
     await over;
     await port.close().catch(() => {});
@@ -151,7 +171,10 @@ export class SerialBoard {
   text(line) {
     if (!this.known && line.startsWith("OK verbs")) {
       this.known = true;
-      [":stream binary", ...SETTINGS].forEach((question) => this.send(question));
+      [":stream", ":stream binary", ...SETTINGS].forEach((question) => this.send(question));
+    } else if (this.known && !this.before) {
+      // The first of these is the answer to the question.
+      this.before = /^OK stream (\w+ every \d+)$/.exec(line)?.[1] ?? null;
     }
     if (line === "OK defaults") SETTINGS.forEach((question) => this.send(question));
     const estimator = /^OK estimator (\w+)/.exec(line);

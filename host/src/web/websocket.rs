@@ -1,5 +1,5 @@
 //! A WebSocket that never makes anybody wait: what does not go out now goes out later, and a browser
-//! that takes nothing for too long is given up.
+//! that has not taken all of it for 5 s is given up.
 
 use std::io::{self, Write};
 use std::net::TcpStream;
@@ -21,7 +21,7 @@ const MESSAGE: usize = 4 * 1024;
 /// Of what waits for a page, besides what the system holds.
 const WAITING: usize = 1024 * 1024;
 
-/// How long a page may take nothing.
+/// How long a page may leave something waiting.
 pub const PATIENCE: Duration = Duration::from_secs(5);
 
 /// How long a page may take to answer a good-bye, and how often it is looked whether it has.
@@ -33,7 +33,7 @@ const LOOK: Duration = Duration::from_millis(10);
 pub enum Over {
     /// The other end has left, or does not keep to the protocol.
     Left,
-    /// The other end takes nothing.
+    /// The other end takes less than there is, for too long or by too much.
     TooSlow,
 }
 

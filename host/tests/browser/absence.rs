@@ -5,6 +5,7 @@ use libtest_mimic::Failed;
 use super::chromium::Chromium;
 use super::moving::START;
 use super::server::Server;
+use super::tab::Size;
 
 const NOTICE: &str = "!document.getElementById('notice').hidden";
 const CLEAR: &str = "document.getElementById('notice').hidden";
@@ -59,6 +60,47 @@ pub fn no_board(chromium: &Chromium) -> Result<(), Failed> {
         &format!("vrduino.status.kind !== 'emulated' && {NOTICE}"),
         30,
     )?;
+    tab.close()
+}
+
+/// Takes the place of the program: tells one status, and keeps what it is asked.
+const TOLD: &str = "window.asked = [];
+    window.WebSocket = class {
+        static OPEN = 1;
+        readyState = 1;
+        constructor() { window.socket = this; }
+        send(text) { window.asked.push(text); }
+        tell(state, message) {
+            const status = { type: 'status', kind: 'emulated', source: 'emulated board', motions: [], state, message };
+            this.onmessage({ data: JSON.stringify(status) });
+        }
+    }";
+
+pub fn not_yet_and_no_more(chromium: &Chromium) -> Result<(), Failed> {
+    let program = Server::view(&["--port", "/dev/no-such-port"]);
+    let mut tab = chromium.open_as(&program.url(), Size::DESK, TOLD)?;
+    let says = |state: &str, title: &str, text: &str, start: bool| {
+        format!(
+            "{NOTICE} && [['state', '{state}'], ['notice-title', '{title}'], ['notice-text', '{text}']]
+                .every(([id, words]) => document.getElementById(id).textContent === words)
+                && document.getElementById('start-emulated').hidden !== {start}"
+        )
+    };
+    tab.until("the page is there", "window.socket?.onmessage", 20)?;
+    tab.eval("socket.tell('waiting', 'the image is being built')")?;
+    let built = says(
+        "starting",
+        "The emulated board is starting",
+        "The image is being built",
+        false,
+    );
+    tab.until("it says what is done", &built, 5)?;
+    tab.eval("socket.tell('ended', 'it has stopped')")?;
+    let stopped = says("ended", "The board has stopped", "It has stopped", true);
+    tab.until("it says so", &stopped, 5)?;
+    tab.click("#start-emulated")?;
+    let asked = r#"asked.join() === '{"start":"emulated"}'"#;
+    tab.until("it can be started again", asked, 5)?;
     tab.close()
 }
 

@@ -31,7 +31,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 
 type Test = fn(&Chromium) -> Result<(), Failed>;
 
-const TESTS: [(&str, Test); 17] = [
+const TESTS: [(&str, Test); 18] = [
     ("the_board_turns_as_the_sensor_does", moving::turns),
     ("a_drag_turns_the_emulated_sensor", moving::by_hand),
     ("two_pages_show_the_same_board", moving::two_pages),
@@ -42,6 +42,10 @@ const TESTS: [(&str, Test); 17] = [
     (
         "without_a_board_there_is_the_emulated_one",
         absence::no_board,
+    ),
+    (
+        "an_emulated_board_that_starts_or_has_stopped_says_so",
+        absence::not_yet_and_no_more,
     ),
     ("a_program_that_ended_is_found_again", absence::no_program),
     ("a_lost_context_comes_back", graphics::lost_context),

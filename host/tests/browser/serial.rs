@@ -12,15 +12,22 @@ use super::tab::Size;
 const FRAMES: u32 = 20_000;
 
 /// Takes the place of the browser's own `navigator.serial`: a port that gives twenty milliseconds of
-/// frames at a time, cut anywhere, and answers a few lines as the board does.
+/// frames at a time, cut anywhere, and answers a few lines as the board does. What it is told takes its
+/// time, and a port that closes forgets the rest; the first port that was ever allowed is another one's.
 const MOCK: &str = "(() => {
     const frames = Uint8Array.from(atob('FRAMES'), (letter) => letter.charCodeAt(0));
     const listeners = {};
-    const mock = { at: 0, written: '', opened: 0, plugged: true };
+    const mock = { at: 0, written: '', said: '', opened: 0, plugged: true, stream: 'timed every 7' };
     const answers = {
-        ':help': 'OK verbs: help version', ':stream binary': 'OK stream binary every 1',
+        ':help': 'OK verbs: help version',
         ':estimator': 'OK estimator notes', ':get tilt-time': 'OK tilt-time 4.0000 s',
         ':get notes-alpha': 'OK notes-alpha 0.9900',
+    };
+    const answer = (line) => {
+        const [verb, value] = line.split(' ');
+        if (verb === ':stream' && value) mock.stream = `${value} every ${value === 'binary' ? 1 : 10}`;
+        if (verb === ':every') mock.stream = mock.stream.replace(/\\d+$/, value);
+        return verb === ':stream' || verb === ':every' ? `OK stream ${mock.stream}` : answers[line];
     };
     const port = {
         async open({ baudRate }) {
@@ -29,18 +36,24 @@ const MOCK: &str = "(() => {
             mock.baudRate = baudRate;
             let control;
             port.readable = new ReadableStream({ start: (c) => { control = c; } });
-            port.writable = new WritableStream({ write(chunk) {
+            port.writable = new WritableStream({ async write(chunk) {
+                await new Promise((done) => setTimeout(done, 5));
                 mock.written += new TextDecoder().decode(chunk);
                 for (let end; (end = mock.written.indexOf('\\n')) >= 0;) {
-                    const answer = answers[mock.written.slice(0, end)];
+                    const said = answer(mock.written.slice(0, end));
                     mock.written = mock.written.slice(end + 1);
-                    if (answer) control.enqueue(new TextEncoder().encode(`${answer}\\n`));
+                    if (said) mock.said += `${said}\\n`;
                 }
             } });
             mock.timer = setInterval(() => {
-                // After 29 · 20 bytes or so: frames are cut in two.
+                // After 29 · 20 bytes or so: frames are cut in two. Answers stand between them.
                 const next = Math.min(frames.length, mock.at + 577);
-                if (next > mock.at) control.enqueue(frames.slice(mock.at, next));
+                const whole = Math.min(next, Math.ceil(mock.at / 29) * 29);
+                const said = new TextEncoder().encode(mock.said);
+                mock.said = '';
+                for (const part of [frames.slice(mock.at, whole), said, frames.slice(whole, next)]) {
+                    if (part.length) control.enqueue(part);
+                }
                 mock.at = next;
             }, 20);
             mock.unplug = () => {
@@ -51,16 +64,24 @@ const MOCK: &str = "(() => {
             };
         },
         async close() {
+            await port.writable.abort();
             clearInterval(mock.timer);
             mock.timer = null;
         },
     };
+    const another = {
+        async open() { throw new DOMException('Failed to open serial port.', 'NetworkError'); },
+    };
     const serial = {
         requestPort: async () => port,
-        getPorts: async () => (mock.plugged ? [port] : []),
+        getPorts: async () => (mock.plugged ? [another, port] : [another]),
         addEventListener(name, act) { listeners[name] = act; },
     };
-    mock.plug = () => { mock.plugged = true; listeners.connect(); };
+    mock.plug = (stream) => {
+        mock.plugged = true;
+        mock.stream = stream;
+        listeners.connect({ target: port });
+    };
     Object.defineProperty(Navigator.prototype, 'serial', { get: () => serial, configurable: true });
     window.mock = mock;
 })()";
@@ -94,21 +115,28 @@ pub fn read(chromium: &Chromium) -> Result<(), Failed> {
     let learnt =
         "vrduino.status.estimator === 'notes' && vrduino.status.settings['tilt-time'] === 4";
     tab.until("the board was asked", learnt, 10)?;
+    tab.until("for frames", "mock.stream === 'binary every 1'", 10)?;
     tab.until(
         "nothing was lost",
         "vrduino.lost === 0 && vrduino.status.malformed === 0",
         1,
     )?;
 
+    tab.eval("dispatchEvent(new PageTransitionEvent('pagehide'))")?;
+    let given_back = "mock.stream === 'timed every 7'";
+    tab.until("a page that goes gives it back", given_back, 10)?;
+
     tab.eval("mock.unplug()")?;
     let gone = "vrduino.status.state === 'lost' && !document.getElementById('notice').hidden";
     tab.until("unplugged, it says so", gone, 10)?;
     let before = tab.eval("vrduino.count")?;
-    tab.eval("mock.plug()")?;
+    tab.eval("mock.plug('counts every 3')")?;
     let again = format!(
         "vrduino.status.state === 'connected' && vrduino.count > {before} + 300 && mock.opened === 2"
     );
     tab.until("plugged in, it goes on", &again, 20)?;
+    let anew = "mock.stream === 'binary every 1' && vrduino.status.estimator === 'notes'";
+    tab.until("and is asked anew", anew, 10)?;
 
     tab.click("#close-serial")?;
     tab.until(
@@ -116,5 +144,7 @@ pub fn read(chromium: &Chromium) -> Result<(), Failed> {
         "vrduino.status.kind !== 'serial' && vrduino.status.state === 'waiting'",
         10,
     )?;
+    let given_back = "mock.stream === 'counts every 3'";
+    tab.until("the board has its stream again", given_back, 1)?;
     tab.close()
 }

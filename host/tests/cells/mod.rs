@@ -1,6 +1,6 @@
 //! Terminals of cells, and what may be drawn into them.
 
-#![allow(dead_code)] // not every test asks for everything
+#![allow(dead_code, reason = "not every test asks for everything")]
 
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! The program under test, as a user starts it.
 
-#![allow(dead_code)] // not every test asks for everything
+#![allow(dead_code, reason = "not every test asks for everything")]
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};

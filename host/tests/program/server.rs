@@ -1,6 +1,6 @@
 //! The program where it serves.
 
-#![allow(dead_code)] // not every test asks for everything
+#![allow(dead_code, reason = "not every test asks for everything")]
 
 use std::ops::{Deref, DerefMut};
 use std::process::{Command, Stdio};

@@ -1,17 +1,18 @@
 //! A serial port without a cable: a pseudo-terminal, with whatever at its other end.
 
+mod terminal;
+
 use std::fs::File;
 use std::io::{Read, Write};
-use std::os::fd::OwnedFd;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
-use rustix::io::{FdFlags, fcntl_setfd};
-use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::fs::{OFlags, fcntl_setfl};
+use rustix::pty::ptsname;
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use terminal::Terminal;
 use vrduino_emulator::board::{Board, Setup};
 use vrduino_emulator::firmware::{self, BuildOptions};
 use vrduino_emulator::image::Image;
@@ -29,26 +30,19 @@ pub struct Pty {
 impl Pty {
     /// A new one, raw, whose device's end does not block.
     pub fn open() -> Self {
-        let device: OwnedFd =
-            openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a pseudo-terminal");
-        // A program that is started meanwhile is not to hold it open.
-        fcntl_setfd(&device, FdFlags::CLOEXEC).expect("not inherited");
-        grantpt(&device).expect("granted");
-        unlockpt(&device).expect("unlocked");
+        let Terminal {
+            person: device,
+            program,
+        } = Terminal::open();
         let path = ptsname(&device, Vec::new())
             .expect("a name")
             .to_string_lossy()
             .into_owned();
-        let other =
-            open(path.as_str(), OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).expect("opens");
-        let mut settings = tcgetattr(&other).expect("settings");
+        let mut settings = tcgetattr(&program).expect("settings");
         settings.make_raw();
-        tcsetattr(&other, OptionalActions::Now, &settings).expect("raw");
+        tcsetattr(&program, OptionalActions::Now, &settings).expect("raw");
         fcntl_setfl(&device, OFlags::NONBLOCK).expect("does not block");
-        Self {
-            device: device.into(),
-            path,
-        }
+        Self { device, path }
     }
 }
 

@@ -10,6 +10,10 @@ mod page;
 #[path = "../program/mod.rs"]
 mod program;
 
+#[cfg(all(unix, feature = "tui"))]
+#[path = "../pty/terminal.rs"]
+mod pty;
+
 #[path = "../program/server.rs"]
 mod server;
 

@@ -1,26 +1,14 @@
 //! `vrduino serve` at a terminal: keys work without Enter, and the terminal is left as it was.
 
-use std::fs::File;
 use std::io::Write;
-use std::os::fd::{AsFd, OwnedFd};
+use std::os::fd::AsFd;
 
-use rustix::fs::{Mode, OFlags, open};
-use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{LocalModes, tcgetattr};
 
 use crate::client::serve;
 use crate::program::command;
+use crate::pty::Terminal;
 use crate::server::Server;
-
-/// What a person types on, and what the program reads from.
-fn terminal() -> (File, OwnedFd) {
-    let person = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a pseudo-terminal");
-    grantpt(&person).expect("granted");
-    unlockpt(&person).expect("unlocked");
-    let path = ptsname(&person, Vec::new()).expect("a name");
-    let program = open(path, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).expect("opens");
-    (person.into(), program)
-}
 
 fn modes(terminal: impl AsFd) -> LocalModes {
     tcgetattr(terminal).expect("a terminal").local_modes
@@ -28,7 +16,10 @@ fn modes(terminal: impl AsFd) -> LocalModes {
 
 #[test]
 fn keys_work_at_once_and_the_terminal_is_left_as_it_was() {
-    let (mut person, stdin) = terminal();
+    let Terminal {
+        mut person,
+        program: stdin,
+    } = Terminal::open();
     let before = modes(&stdin);
     assert!(before.contains(LocalModes::ICANON | LocalModes::ECHO));
     let own = stdin.try_clone().expect("another");

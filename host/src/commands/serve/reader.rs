@@ -75,14 +75,14 @@ impl Reader {
         }
     }
 
-    /// Until the reader leaves, takes nothing for too long, or the server ends.
+    /// Until the reader leaves, has not taken all for 5 s, or the server ends.
     fn run(mut self, server: &Server) {
         while !server.is_ending() {
             match self.turn(LOOK) {
                 Ok(()) => {}
                 Err(Over::Left) => return,
                 Err(Over::TooSlow) => {
-                    let sentence = "a reader has taken nothing for five seconds and is let go";
+                    let sentence = "a reader has not taken all for five seconds and is let go";
                     // The terminal may be one that does not return the carriage by itself.
                     let _ = write!(io::stderr(), "{sentence}\r\n");
                     return;

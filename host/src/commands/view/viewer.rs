@@ -149,13 +149,13 @@ impl<'a> Viewer<'a> {
             }
             Asked::Line(line) => self.hub.say(&line),
             Asked::Key(key) => self.hub.press(&[key]),
-            Asked::Emulate if is_emulated => {}
+            Asked::Emulate if is_emulated && status.state != State::Ended => {}
             Asked::Emulate if status.state == State::Connected => {
                 return Err(
                     "error: a board is connected: unplug it before you take the emulated one",
                 );
             }
-            Asked::Emulate => self.hub.switch(Choice::Emulated(Emulation::default())),
+            Asked::Emulate => self.hub.switch(self.emulation()),
             Asked::Stop if is_emulated => self.hub.switch(self.after_emulation()),
             Asked::Motion(name) if is_emulated => {
                 // Not any file of this computer's: only what has been offered.
@@ -171,6 +171,14 @@ impl<'a> Viewer<'a> {
             }
         }
         Ok(())
+    }
+
+    /// The emulated board that was asked for, or the usual one.
+    fn emulation(&self) -> Choice {
+        match self.choice {
+            Choice::Emulated(emulation) => Choice::Emulated(emulation.clone()),
+            _ => Choice::Emulated(Emulation::default()),
+        }
     }
 
     /// The port that was asked for, or any.
