@@ -7,24 +7,15 @@ use clap::Args;
 use crate::source::emulated::{MOTIONS, PartKind};
 use crate::source::{Choice, Emulation, Replay};
 
-/// Which board, or what stands for one. Without any of them it is the one board that is plugged in.
+/// Which board. Without any of them it is the one that is plugged in.
 #[derive(Clone, Debug, Default, Args)]
-pub struct SourceArguments {
+pub struct BoardArguments {
     /// The board's serial port, as `vrduino list` names it; tcp:HOST:PORT reads one over the network
     #[arg(long, value_name = "PORT", group = "source")]
     pub port: Option<String>,
     /// The emulated board, in this program
     #[arg(long, group = "source")]
     pub emulate: bool,
-    /// A recording of `vrduino record`
-    #[arg(long, value_name = "FILE", group = "source")]
-    pub replay: Option<PathBuf>,
-    /// The recording is played so many times as fast as it came
-    #[arg(long, value_name = "TIMES", requires = "replay", default_value_t = 1.0, value_parser = speed)]
-    pub speed: f64,
-    /// When the recording is over it begins again
-    #[arg(long, requires = "replay")]
-    pub repeat: bool,
     /// What the emulated board is carried through: head, turns, hand, still, tumble, or the file of a motion; head unless the
     /// command wants another
     #[arg(long, value_name = "MOTION", requires = "emulate")]
@@ -43,21 +34,26 @@ pub struct SourceArguments {
     pub unpaced: bool,
 }
 
-impl SourceArguments {
-    /// The source they choose.
-    pub fn choice(&self) -> Choice {
-        self.choice_moved_by(MOTIONS[0])
-    }
+/// Which board, or a recording in its place, for commands to which it makes no difference.
+#[derive(Clone, Debug, Default, Args)]
+pub struct SourceArguments {
+    /// Which board.
+    #[command(flatten)]
+    pub board: BoardArguments,
+    /// A recording of `vrduino record`
+    #[arg(long, value_name = "FILE", group = "source")]
+    pub replay: Option<PathBuf>,
+    /// The recording is played so many times as fast as it came
+    #[arg(long, value_name = "TIMES", requires = "replay", default_value_t = 1.0, value_parser = speed)]
+    pub speed: f64,
+    /// When the recording is over it begins again
+    #[arg(long, requires = "replay")]
+    pub repeat: bool,
+}
 
-    /// The same; an emulated board is carried through this unless another motion was named.
+impl BoardArguments {
+    /// The board they choose; an emulated one is carried through this unless another motion was named.
     pub fn choice_moved_by(&self, motion: &str) -> Choice {
-        if let Some(path) = &self.replay {
-            return Choice::Replay(Replay {
-                path: path.clone(),
-                speed: self.speed,
-                repeats: self.repeat,
-            });
-        }
         if self.emulate {
             return Choice::Emulated(Emulation {
                 image: self.image.clone(),
@@ -68,6 +64,25 @@ impl SourceArguments {
             });
         }
         Choice::Port(self.port.clone())
+    }
+}
+
+impl SourceArguments {
+    /// The source they choose.
+    pub fn choice(&self) -> Choice {
+        self.choice_moved_by(MOTIONS[0])
+    }
+
+    /// The same; an emulated board is carried through this unless another motion was named.
+    pub fn choice_moved_by(&self, motion: &str) -> Choice {
+        match &self.replay {
+            Some(path) => Choice::Replay(Replay {
+                path: path.clone(),
+                speed: self.speed,
+                repeats: self.repeat,
+            }),
+            None => self.board.choice_moved_by(motion),
+        }
     }
 }
 

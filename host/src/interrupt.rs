@@ -11,8 +11,8 @@ const CUT_OFF: i32 = 130;
 /// Some programs signal the process and its group, which is once for the user.
 const ONCE: Duration = Duration::from_millis(500);
 
-/// Whether the user wants it to end.
-#[derive(Clone, Debug)]
+/// Whether the user wants it to end. The default is one that never comes.
+#[derive(Clone, Debug, Default)]
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {

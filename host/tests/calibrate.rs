@@ -2,6 +2,10 @@
 
 mod program;
 
+#[cfg(unix)]
+#[allow(dead_code, reason = "each test takes what it needs")]
+mod pty;
+
 use program::{Ended, place, vrduino};
 use vrduino_emulator::mpu9250::Part;
 
@@ -101,9 +105,114 @@ fn a_board_that_only_lies_there_is_refused_with_what_is_missing() {
 fn what_makes_no_sense_is_refused_at_once() {
     vrduino(&["calibrate", "--emulate", "--seconds", "0"]).expect(2);
     vrduino(&["calibrate", "--replay", "x.csv"])
-        .expect(4)
-        .said("cannot be laid on its faces");
+        .expect(2)
+        .said("unexpected argument '--replay'");
     vrduino(&["calibrate", "--port", "tcp:127.0.0.1:1"])
         .expect(3)
         .said("nothing answers");
+}
+
+#[cfg(unix)]
+mod in_a_terminal {
+    use std::fs::File;
+    use std::io::{ErrorKind, Read, Write};
+    use std::os::fd::OwnedFd;
+    use std::process::{Child, Stdio};
+    use std::thread;
+    use std::time::{Duration, Instant};
+
+    use rustix::fs::{Mode, OFlags, open};
+    use rustix::process::{Pid, Signal, kill_process};
+
+    use super::program::{PATIENCE, command, place};
+    use super::pty::Pty;
+
+    /// A calibration of a board that only lies there, in a terminal of its own.
+    struct Seat {
+        user: File,
+        /// Held open: what the program said last can be read when it has ended.
+        _terminal: OwnedFd,
+        child: Child,
+        seen: String,
+    }
+
+    impl Seat {
+        fn take() -> Self {
+            let Pty { device, path } = Pty::open();
+            let terminal = open(path, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).expect("opens");
+            let end = || terminal.try_clone().expect("one more");
+            let child = command()
+                .args(["calibrate", "--emulate", "--unpaced", "--motion", "still"])
+                .args(["--seconds", "3", "--picture"])
+                .arg(place("asked.svg"))
+                .stdin(end())
+                .stdout(end())
+                .stderr(Stdio::null())
+                .spawn()
+                .expect("the program starts");
+            Self {
+                user: device,
+                _terminal: terminal,
+                child,
+                seen: String::new(),
+            }
+        }
+
+        fn until(&mut self, words: &str) {
+            let began = Instant::now();
+            while !self.seen.contains(words) {
+                assert!(began.elapsed() < PATIENCE, "no {words}: {}", self.seen);
+                let mut buffer = [0; 4096];
+                match self.user.read(&mut buffer) {
+                    Ok(count) => self.seen += &String::from_utf8_lossy(&buffer[..count]),
+                    Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                        thread::sleep(Duration::from_millis(10));
+                    }
+                    Err(error) => panic!("{error}; no {words}: {}", self.seen),
+                }
+            }
+        }
+
+        fn end(mut self) -> Option<i32> {
+            let began = Instant::now();
+            loop {
+                if let Some(status) = self.child.try_wait().expect("a child") {
+                    return status.code();
+                }
+                assert!(began.elapsed() < PATIENCE, "it does not end");
+                thread::sleep(Duration::from_millis(10));
+            }
+        }
+    }
+
+    impl Drop for Seat {
+        fn drop(&mut self) {
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+            let _ = std::fs::remove_file(place("asked.svg"));
+        }
+    }
+
+    #[test]
+    fn the_question_can_be_answered_and_left() {
+        let mut seat = Seat::take();
+        seat.until("[y/N]");
+        let pid = Pid::from_child(&seat.child);
+        kill_process(pid, Signal::INT).expect("it runs");
+        seat.until("stopped: the board is as it was");
+        assert_eq!(seat.end(), Some(0));
+
+        // What was refused makes it a 4.
+        let mut seat = Seat::take();
+        seat.until("[y/N]");
+        seat.user.write_all(b"n\n").expect("typed");
+        seat.until("nothing sent: the board is as it was");
+        assert_eq!(seat.end(), Some(4));
+
+        let mut seat = Seat::take();
+        seat.until("[y/N]");
+        seat.user.write_all(b"y\n").expect("typed");
+        seat.until("the board keeps it");
+        assert_eq!(seat.end(), Some(4));
+    }
 }

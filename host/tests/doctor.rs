@@ -38,6 +38,9 @@ fn what_is_not_there_is_said() {
     vrduino(&["doctor", "--emulate", "--image", image])
         .expect(1)
         .said("neither ELF nor Intel HEX");
+    vrduino(&["doctor", "--replay", "x.csv"])
+        .expect(2)
+        .said("unexpected argument '--replay'");
 }
 
 #[cfg(unix)]

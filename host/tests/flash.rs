@@ -165,6 +165,29 @@ fn a_dry_run_touches_nothing() {
 }
 
 #[test]
+fn what_lies_beside_an_elf_file_stays_as_it_is() {
+    let bench = Bench::new("beside", WRITES);
+    let elf = firmware::build(BuildOptions { quiet: true }).expect("the firmware builds");
+    let (mine, kept) = (bench.file("mine.elf"), bench.file("mine.hex"));
+    fs::copy(elf, &mine).expect("a copy");
+    fs::write(&kept, "kept").expect("a file");
+    let ended = bench.flash(&[
+        "--dry-run",
+        "--hex",
+        text(&mine),
+        "--port",
+        "/dev/there-is-none",
+    ]);
+    ended.expect(0);
+    assert_eq!(fs::read_to_string(&kept).expect("the file"), "kept");
+    let words = ended.out.split_whitespace();
+    let hex = words.last().expect("what would be written");
+    assert!(hex.ends_with("mine.hex") && hex != text(&kept), "{hex}");
+    let image = Image::open(Path::new(hex)).expect("an image");
+    assert_eq!(image.to_hex(), Image::open(&mine).expect("it").to_hex());
+}
+
+#[test]
 fn what_would_lock_the_board_is_not_flashed() {
     let bench = Bench::new("locks", WRITES);
     let image = firmware::build(BuildOptions { quiet: true }).expect("the firmware builds");

@@ -2,6 +2,10 @@
 
 mod program;
 
+#[cfg(unix)]
+#[allow(dead_code, reason = "each test takes what it needs")]
+mod pty;
+
 use program::vrduino;
 
 /// Whether a board is plugged in or not, for nobody knows where this is run.
@@ -33,4 +37,19 @@ fn programs_get_json() {
         assert!(["board", "loader", "usb", "plain"].contains(&what), "{row}");
         assert_eq!(row["name"].is_null(), what == "loader", "{row}");
     }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_port_that_is_in_use_is_told_from_one_that_is_not_there() {
+    use vrduino_host::source::port::{Cause, open_at, try_port};
+
+    let pty::Pty { device, path } = pty::Pty::open();
+    try_port(&path).expect("free");
+    let held = open_at(&path, 115_200).expect("opens");
+    let (cause, failure) = try_port(&path).expect_err("held");
+    assert_eq!(cause, Cause::InUse, "{failure}");
+    drop((held, device));
+    let (cause, failure) = try_port("/dev/there-is-none").expect_err("none");
+    assert_eq!(cause, Cause::Absent, "{failure}");
 }

@@ -16,12 +16,13 @@ mod report;
 
 use std::fs;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
 use vrduino::calibration::record::Record;
 use vrduino::sensor::magnetometer::SensitivityAdjustment;
 
-use crate::arguments::SourceArguments;
+use crate::arguments::BoardArguments;
 use crate::board::{self, Acquaintance};
 use crate::failure::{Failure, Kind};
 use crate::interrupt::Interrupt;
@@ -33,12 +34,19 @@ use procedure::Procedure;
 /// The motion by which an emulated board is calibrated.
 const MOTION: &str = "tumble";
 
+/// An answer, or Ctrl-C, is not left waiting longer.
+const NAP: Duration = Duration::from_millis(50);
+
+/// What is said after Ctrl-C.
+const STOPPED: &str = "stopped: the board is as it was";
+
 const EXAMPLES: &str = "\
 Examples:
   vrduino calibrate                                      the board that is plugged in; asks before it changes anything
   vrduino calibrate --emulate --part typical --yes       an emulated board with errors of its own, from end to end
   vrduino calibrate --dry-run board.keep                 the lines that hand the result to a board, into a file
 
+A recording cannot be laid on its faces; a motion in a file is what `--emulate --motion FILE` takes.
 What is refused is left as the board knows it. `:forget`, typed to the board, forgets everything.";
 
 /// What is asked for.
@@ -47,7 +55,7 @@ What is refused is left as the board knows it. `:forget`, typed to the board, fo
 pub struct Arguments {
     /// Where from.
     #[command(flatten)]
-    pub source: SourceArguments,
+    pub source: BoardArguments,
     /// Most seconds for each of the three parts
     #[arg(long, value_name = "S", default_value_t = 120.0, value_parser = seconds)]
     pub seconds: f64,
@@ -75,19 +83,13 @@ fn seconds(text: &str) -> Result<f64, String> {
 ///
 /// There is no board, it sends no counts, or a part of the result is refused.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.source.replay.is_some() {
-        return Err(Failure::new(
-            Kind::Stream,
-            "a recording cannot be laid on its faces: give --port or --emulate (`cargo run --example calibrate -- FILE` takes a motion from a file)",
-        ));
-    }
     let board = board::meet(arguments.source.choice_moved_by(MOTION), "counts")?;
     let interrupt = Interrupt::listen();
     let mut output = Output::new();
     let mut procedure = Procedure::new(adjustment(&board)?);
     let guide = Guide::new(&board, &interrupt, arguments.seconds);
     if !guide.lead(&mut procedure, &mut output)? {
-        output.say("stopped: the board is as it was");
+        output.say(STOPPED);
         return Ok(());
     }
     let refused = report::tell(&procedure, &mut output);
@@ -96,7 +98,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let record = procedure.record();
     if record != Record::default() {
-        settle(&board, &record, arguments, &mut output)?;
+        let went_on = settle(&board, &record, arguments, &interrupt, &mut output)?;
+        if !went_on {
+            output.say(format!("\n{STOPPED}"));
+            return Ok(());
+        }
     }
     match refused {
         None => Ok(()),
@@ -137,13 +143,14 @@ fn unwritten(path: &std::path::Path, error: &std::io::Error) -> Failure {
     Failure::new(Kind::File, sentence)
 }
 
-/// To the board, or into a file.
+/// To the board, or into a file; whether Ctrl-C let it.
 fn settle(
     board: &Acquaintance,
     record: &Record,
     arguments: &Arguments,
+    interrupt: &Interrupt,
     output: &mut Output,
-) -> Result<(), Failure> {
+) -> Result<bool, Failure> {
     if let Some(path) = &arguments.dry_run {
         let lines: String = record.lines().map(|line| format!("{line}\n")).collect();
         fs::write(path, lines).map_err(|error| unwritten(path, &error))?;
@@ -151,16 +158,29 @@ fn settle(
             "nothing sent; {} has the lines that hand this to a board",
             path.display()
         ));
-        return Ok(());
+        return Ok(true);
     }
-    let wanted = arguments.yes
-        || Output::is_terminal() && output.ask("\nLet the board keep what was found?")?;
-    if !wanted {
-        output.say("nothing sent: the board is as it was (--yes lets it keep what was found)");
-        return Ok(());
+    let wanted = if arguments.yes {
+        Some(true)
+    } else if Output::is_terminal() {
+        output.ask("\nLet the board keep what was found?", || {
+            // The stream goes on, and nobody wants it now.
+            board.updates.next(NAP);
+            !interrupt.has_come()
+        })?
+    } else {
+        Some(false)
+    };
+    match wanted {
+        Some(true) => {}
+        Some(false) => {
+            output.say("nothing sent: the board is as it was (--yes lets it keep what was found)");
+            return Ok(true);
+        }
+        None => return Ok(false),
     }
     let known = keep::hand_over(board, record)?;
     let known = known.strip_prefix("calibration: ").unwrap_or(&known);
     output.say(format!("the board keeps it: {known}"));
-    Ok(())
+    Ok(true)
 }

@@ -16,9 +16,9 @@ mod watch;
 
 use clap::Args;
 
-use crate::arguments::SourceArguments;
+use crate::arguments::BoardArguments;
 use crate::board;
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 use crate::hub::{Hold, Hub};
 use crate::output::Output;
 use crate::source::Choice;
@@ -37,7 +37,7 @@ seconds. Without a board, --emulate shows what a healthy one looks like.";
 pub struct Arguments {
     /// Where from.
     #[command(flatten)]
-    pub source: SourceArguments,
+    pub source: BoardArguments,
 }
 
 /// Looks.
@@ -46,12 +46,6 @@ pub struct Arguments {
 ///
 /// Something is wrong.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.source.replay.is_some() {
-        return Err(Failure::new(
-            Kind::Stream,
-            "a recording has no plug: give --port or --emulate",
-        ));
-    }
     let mut report = Report::new(Output::new());
     let choice = arguments.source.choice_moved_by(MOTION);
     if let Some(choice) = port::look(choice, &mut report) {

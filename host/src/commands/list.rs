@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::computer::{access, halfkay, programs};
 use crate::failure::{Failure, Kind};
 use crate::output::Output;
-use crate::source::port::{self, Found};
+use crate::source::port::{self, Cause, Found};
 
 const MEANING: &str = "\
 A board is what has a Teensy's USB numbers: whether its program is the tracker's, `vrduino doctor` finds out. Its port
@@ -156,21 +156,24 @@ fn state(name: &str, what: What) -> (State, String) {
         return (State::Busy, format!("in use by {}", names.join(", ")));
     }
     if access::barrier(name).is_some() {
-        return (
-            State::Denied,
-            "you may not open it: see `vrduino doctor`".into(),
-        );
+        return denied();
     }
     if what != What::Board {
         return (State::Free, String::new());
     }
     match port::try_port(name) {
         Ok(()) => (State::Free, String::new()),
-        Err(failure) if failure.sentence.contains("in use") => {
-            (State::Busy, "in use by another program".into())
-        }
-        Err(failure) => (State::Broken, failure.sentence),
+        Err((Cause::InUse, _)) => (State::Busy, "in use by another program".into()),
+        Err((Cause::Denied, _)) => denied(),
+        Err((Cause::Absent | Cause::Other, failure)) => (State::Broken, failure.sentence),
     }
+}
+
+fn denied() -> (State, String) {
+    (
+        State::Denied,
+        "you may not open it: see `vrduino doctor`".into(),
+    )
 }
 
 /// A line each, in columns.

@@ -21,7 +21,7 @@ Examples:
   vrduino replay desk.csv --stream binary --tcp 5000
   vrduino monitor --port tcp:127.0.0.1:5000     elsewhere: what that serves
 
-To see it, `vrduino view --replay desk.csv`; every command that reads a board can read a recording so.";
+To see it, `vrduino view --replay desk.csv`; `tui`, `serve`, `monitor` and `record` read one so too.";
 
 /// What is asked for.
 #[derive(Clone, Debug, Args)]

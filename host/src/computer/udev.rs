@@ -11,8 +11,9 @@ const FOLDERS: [&str; 4] = [
     "/lib/udev/rules.d",
 ];
 
-/// Where ours goes: PJRC's own rules have this name.
-pub const FILE: &str = "/etc/udev/rules.d/00-teensy.rules";
+/// Where ours goes: beside PJRC's `00-teensy.rules`, which stays as it is, and before systemd's
+/// `73-seat-late.rules`, which reads the tag in it.
+pub const FILE: &str = "/etc/udev/rules.d/70-vrduino.rules";
 
 /// The rule that is there: the first file that opens Teensys to others than the superuser.
 pub fn rule() -> Option<PathBuf> {
@@ -49,7 +50,7 @@ fn opens_teensys(rules: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::opens_teensys;
+    use super::{FILE, opens_teensys};
     use crate::source::port::UDEV_RULE;
 
     #[test]
@@ -62,5 +63,12 @@ mod tests {
         assert!(!opens_teensys(
             "ATTRS{idVendor}==\"16c0\", ENV{ID_MM_DEVICE_IGNORE}=\"1\"\nATTRS{idVendor}==\"0403\", MODE=\"0666\"\n"
         ));
+    }
+
+    #[test]
+    fn our_file_takes_no_other_s_place_and_is_read_before_its_tag_is() {
+        let (_, name) = FILE.rsplit_once('/').unwrap();
+        assert_ne!(name, "00-teensy.rules");
+        assert!(UDEV_RULE.contains("TAG+=\"uaccess\"") && name < "73-seat-late.rules");
     }
 }

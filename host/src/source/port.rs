@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use super::{Event, Gone, Listener, Order};
 use crate::failure::{Failure, Kind};
 pub use search::{Found, MANUFACTURER, boards, find, ports};
-pub use trouble::UDEV_RULE;
+pub use trouble::{Cause, UDEV_RULE};
 
 /// Bytes that are waited for at a time: a sample is to be passed on when it is there.
 const PATIENCE: Duration = Duration::from_millis(4);
@@ -130,19 +130,23 @@ fn open(name: Option<&str>) -> Result<(Box<dyn Link>, String), Failure> {
 ///
 /// Why it does not open.
 pub fn open_at(name: &str, baud: u32) -> Result<Box<dyn serialport::SerialPort>, Failure> {
+    attempt(name, baud).map_err(|(_, failure)| failure)
+}
+
+/// Whether a serial port can be had: opens it and lets go of it again.
+///
+/// # Errors
+///
+/// Why it does not open, in short and in a sentence.
+pub fn try_port(name: &str) -> Result<(), (Cause, Failure)> {
+    attempt(name, BAUD).map(drop)
+}
+
+fn attempt(name: &str, baud: u32) -> Result<Box<dyn serialport::SerialPort>, (Cause, Failure)> {
     serialport::new(name, baud)
         .timeout(PATIENCE)
         .open()
         .map_err(|error| trouble::opening(name, &error))
-}
-
-/// Whether it can be had: opens it and lets go of it again.
-///
-/// # Errors
-///
-/// Why it does not open.
-pub fn try_port(name: &str) -> Result<(), Failure> {
-    open(Some(name)).map(drop)
 }
 
 fn dial(address: &str) -> Result<TcpStream, Failure> {

@@ -121,7 +121,7 @@ fn permission(name: &str, report: &mut Report) -> bool {
         return true;
     };
     let mut advice = format!(
-        "let everybody who sits here use Teensys:\n{}",
+        "let every user of this computer use Teensys:\n{}",
         install_rule()
     );
     if let Some(group) = group {

@@ -33,7 +33,7 @@ pub fn prepare(file: Option<&Path>) -> Result<Prepared, Failure> {
         Failure::new(Kind::File, sentence)
     })?;
     let hex = if is_elf(&named) {
-        convert(&image, file)?
+        convert(&image, &named, file.is_none())?
     } else {
         named
     };
@@ -53,15 +53,20 @@ fn is_elf(path: &Path) -> bool {
         .is_ok_and(|()| magic == *b"\x7fELF")
 }
 
-/// Beside the ELF file where one was named, else where `cargo image` puts it.
-fn convert(image: &Image, file: Option<&Path>) -> Result<PathBuf, Failure> {
-    let hex = match file {
-        Some(file) => file.with_extension("hex"),
-        None => firmware::target_dir()
-            .map_err(|error| Failure::new(Kind::Computer, error.to_string()))?
-            .join("vrduino.hex"),
+/// Our own goes where `cargo image` puts it; any other into a folder where nobody keeps what is his, which
+/// the file beside the ELF may be.
+fn convert(image: &Image, elf: &Path, is_ours: bool) -> Result<PathBuf, Failure> {
+    let target =
+        firmware::target_dir().map_err(|error| Failure::new(Kind::Computer, error.to_string()))?;
+    let folder = if is_ours {
+        target
+    } else {
+        target.join("flash")
     };
-    fs::write(&hex, image.to_hex()).map_err(|error| {
+    let name = Path::new(elf.file_stem().unwrap_or("vrduino".as_ref()));
+    let hex = folder.join(name).with_added_extension("hex");
+    let written = fs::create_dir_all(&folder).and_then(|()| fs::write(&hex, image.to_hex()));
+    written.map_err(|error| {
         let sentence = format!(
             "{} cannot be written: {error}; is the disk full?",
             hex.display()

@@ -29,6 +29,11 @@ const DONE: &str = "Booting";
 const HINT: Duration = Duration::from_secs(8);
 /// So long somebody may look for the button.
 const PATIENCE: Duration = Duration::from_secs(120);
+/// So long the rest may take once the board is found: all of the flash takes some ten seconds.
+const WRITING: Duration = Duration::from_secs(60);
+
+/// Between two looks at whether to go on.
+const NAP: Duration = Duration::from_millis(100);
 
 /// What it is called with.
 pub fn arguments(hex: &Path) -> [OsString; 4] {
@@ -46,17 +51,26 @@ pub fn arguments(hex: &Path) -> [OsString; 4] {
 ///
 /// It does not start, finds no board, or fails.
 pub fn write(loader: &Path, hex: &Path, interrupt: &Interrupt) -> Result<(), Failure> {
-    let mut child = Command::new(loader)
-        .args(arguments(hex))
+    run(
+        Command::new(loader).args(arguments(hex)),
+        interrupt,
+        WRITING,
+    )
+}
+
+/// Runs the loader, which may write for so long.
+fn run(loader: &mut Command, interrupt: &Interrupt, writing: Duration) -> Result<(), Failure> {
+    let mut child = loader
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .map_err(|error| {
-            let sentence = format!("{} does not start: {error}", loader.display());
+            let program = Path::new(loader.get_program()).display();
+            let sentence = format!("{program} does not start: {error}");
             Failure::new(Kind::Computer, sentence)
         })?;
-    let heard = listen(&mut child, interrupt);
+    let heard = listen(&mut child, interrupt, writing);
     let status = match &heard {
         Ok(_) => child.wait(),
         Err(_) => {
@@ -77,7 +91,7 @@ pub fn write(loader: &Path, hex: &Path, interrupt: &Interrupt) -> Result<(), Fai
 }
 
 /// Passes on what it says until it ends: all of that.
-fn listen(child: &mut Child, interrupt: &Interrupt) -> Result<String, Failure> {
+fn listen(child: &mut Child, interrupt: &Interrupt, writing: Duration) -> Result<String, Failure> {
     let (said, chunks) = mpsc::channel();
     if let Some(output) = child.stdout.take() {
         pass_on(output, io::stdout(), said.clone());
@@ -89,11 +103,16 @@ fn listen(child: &mut Child, interrupt: &Interrupt) -> Result<String, Failure> {
     let began = Instant::now();
     let mut all = String::new();
     let mut hinted = false;
+    let mut found = None;
     loop {
-        match chunks.recv_timeout(Duration::from_millis(100)) {
+        match chunks.recv_timeout(NAP) {
             Ok(chunk) => all += &chunk,
-            Err(RecvTimeoutError::Disconnected) => return Ok(all),
             Err(RecvTimeoutError::Timeout) => {}
+            // Silence is not the end yet.
+            Err(RecvTimeoutError::Disconnected) => match child.try_wait() {
+                Ok(None) => thread::sleep(NAP),
+                Ok(Some(_)) | Err(_) => return Ok(all),
+            },
         }
         if interrupt.has_come() {
             return Err(Failure::new(
@@ -102,6 +121,14 @@ fn listen(child: &mut Child, interrupt: &Interrupt) -> Result<String, Failure> {
             ));
         }
         if all.contains(FOUND) {
+            if found.get_or_insert_with(Instant::now).elapsed() > writing {
+                return Err(Failure::new(
+                    Kind::Board,
+                    format!(
+                        "{LOADER} has found the board and comes to no end: unplug the board, plug it in again, press the button on it and run this again"
+                    ),
+                ));
+            }
             continue;
         }
         if began.elapsed() > HINT && !hinted {
@@ -168,6 +195,28 @@ fn failed(said: &str, how: &str) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::failed;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_loader_that_hangs_is_ended() {
+        use super::run;
+        use crate::interrupt::Interrupt;
+        use std::process::Command;
+        use std::time::Duration;
+
+        // Silently, and with its mouth shut.
+        for how in ["", ">&- 2>&-"] {
+            let script = format!("echo 'Found HalfKay Bootloader'; exec sleep 600 {how}");
+            let mut loader = Command::new("sh");
+            let failure = run(
+                loader.args(["-c", &script]),
+                &Interrupt::default(),
+                Duration::from_millis(300),
+            )
+            .unwrap_err();
+            assert!(failure.sentence.contains("comes to no end"), "{failure}");
+        }
+    }
 
     #[test]
     fn last_words_are_explained() {
