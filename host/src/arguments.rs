@@ -11,7 +11,7 @@ use crate::source::{Choice, Emulation, Replay};
 #[derive(Clone, Debug, Default, Args)]
 pub struct BoardArguments {
     /// The board's serial port, as `vrduino list` names it; tcp:HOST:PORT reads one over the network
-    #[arg(long, value_name = "PORT", group = "source")]
+    #[arg(long, value_name = "PORT", group = "source", value_parser = port)]
     pub port: Option<String>,
     /// The emulated board, in this program
     #[arg(long, group = "source")]
@@ -91,5 +91,17 @@ pub fn speed(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(speed) if (0.01..=1000.0).contains(&speed) => Ok(speed),
         _ => Err("a number from 0.01 to 1000".into()),
+    }
+}
+
+/// A port's name; an address of the network has to be one.
+fn port(text: &str) -> Result<String, String> {
+    let is_address = |address: &str| {
+        let (host, port) = address.rsplit_once(':').unwrap_or_default();
+        !host.is_empty() && port.parse::<u16>().is_ok()
+    };
+    match text.strip_prefix("tcp:") {
+        Some(address) if !is_address(address) => Err("as tcp:127.0.0.1:4000, host and port".into()),
+        _ => Ok(text.to_owned()),
     }
 }

@@ -28,7 +28,7 @@ use check::Report;
 const MOTION: &str = "still";
 
 const MEANING: &str = "\
-✓ is as it should be, ! may become a nuisance, ✗ has to be mended. Let the board lie still meanwhile: it takes some ten
+✓ is as it should be, ! may become a nuisance, ✗ has to be mended. Let the board lie still meanwhile: it takes some ten \
 seconds. Without a board, --emulate shows what a healthy one looks like.";
 
 /// What is asked for.

@@ -23,8 +23,8 @@ pub use loader::{LOADER, WHERE_TO_GET_IT};
 const RETURN: Duration = Duration::from_secs(15);
 
 const MEANING: &str = "\
-The board is asked to go into its loader (the port is opened at 134 baud); one that does not know that is sent there by
-the button on it. Then PJRC's teensy_loader_cli writes the image, and the board is asked `:version`. An image that would not
+The board is asked to go into its loader (the port is opened at 134 baud); one that does not know that is sent there by \
+the button on it. Then PJRC's teensy_loader_cli writes the image, and the board is asked `:version`. An image that would not \
 start, or would lock the board for good, is refused before anything is touched.";
 
 /// What is asked for.

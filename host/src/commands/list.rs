@@ -9,7 +9,7 @@ use crate::output::Output;
 use crate::source::port::{self, Cause, Found};
 
 const MEANING: &str = "\
-A board is what has a Teensy's USB numbers: whether its program is the tracker's, `vrduino doctor` finds out. Its port
+A board is what has a Teensy's USB numbers: whether its program is the tracker's, `vrduino doctor` finds out. Its port \
 is opened for a moment to see whether it can be had; other ports are not, for some boards start anew when they are.";
 
 /// What is asked for.
