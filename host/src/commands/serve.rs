@@ -50,8 +50,8 @@ programs and pages of this computer are let in: pages from localhost, 127.0.0.1 
 opened from a file. What they send is not read.
 
 Keys go to the board at once: 0 to 5 choose what it sends, r recenters, b measures the bias, and a line that begins \
-with a colon is a command (:help). d stops printing and begins again, Ctrl-C ends. Input from a pipe goes to the \
-board as it is.";
+with a colon is a command (:help) and goes with Enter. d stops printing and begins again, Ctrl-C ends. Input from a \
+pipe goes to the board too, no faster than it is taken.";
 
 /// Serves the lines until Ctrl-C.
 ///
