@@ -23,7 +23,7 @@ use crate::failure::{Failure, Kind};
 use crate::source::{self, Choice, Event, Order, Source, Truth};
 use crate::stream::{Item, Stream};
 use conversation::Conversation;
-pub use conversation::Wish;
+pub use conversation::{Wish, answer};
 pub use status::{State, Status};
 use subscription::Queue;
 pub use subscription::{Hold, Subscription};

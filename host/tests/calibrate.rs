@@ -3,7 +3,6 @@
 mod program;
 
 #[cfg(unix)]
-#[allow(dead_code, reason = "each test takes what it needs")]
 mod pty;
 
 use program::{Ended, place, vrduino};

@@ -7,7 +7,6 @@
 
 mod program;
 
-#[allow(dead_code, reason = "each test takes what it needs")]
 mod pty;
 
 use std::fs;

@@ -3,7 +3,7 @@
 //! A board whose program is another than ours takes single letters for keys (`b` measures its bias, `r`
 //! turns it round), so it is asked something that holds none of them before anything else: `:help`.
 
-mod answer;
+pub mod answer;
 
 use std::collections::VecDeque;
 use std::sync::mpsc::Sender;

@@ -11,7 +11,7 @@ use vrduino::view::mounting::Mounting;
 use vrduino::view::viewer::Viewer;
 
 use super::strips::Strips;
-use crate::hub::{State, Status, Update};
+use crate::hub::{State, Status, Update, answer};
 use crate::source::Truth;
 use crate::stream::condition::Condition;
 use crate::stream::{Item, Sample};
@@ -113,7 +113,7 @@ impl Model {
             Item::Registers(_) => {}
             Item::Line(line) => {
                 // The hub asks much that nobody here has asked.
-                let is_answer = ["OK ", "ERR "].iter().any(|word| line.starts_with(word));
+                let is_answer = answer::is_one(line);
                 if !is_answer || self.awaited > 0 {
                     self.note(line.clone());
                 }

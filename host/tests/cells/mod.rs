@@ -1,5 +1,6 @@
 //! Terminals of cells, and what may be drawn into them.
 
+// Every test file compiles a copy of this and calls what it needs of it: the rest is unused there, not everywhere.
 #![allow(dead_code, reason = "not every test asks for everything")]
 
 use std::sync::Arc;

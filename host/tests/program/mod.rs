@@ -1,5 +1,6 @@
 //! The program under test, as a user starts it.
 
+// Every test file compiles a copy of this and calls what it needs of it: the rest is unused there, not everywhere.
 #![allow(dead_code, reason = "not every test asks for everything")]
 
 use std::io::{BufRead, BufReader, Read, Write};

@@ -1,5 +1,6 @@
 //! The program where it serves.
 
+// Every test file compiles a copy of this and calls what it needs of it: the rest is unused there, not everywhere.
 #![allow(dead_code, reason = "not every test asks for everything")]
 
 use std::ops::{Deref, DerefMut};

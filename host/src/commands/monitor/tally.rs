@@ -1,5 +1,6 @@
 //! What has come since the beginning.
 
+use crate::hub::answer;
 use crate::stream::condition::Condition;
 use crate::stream::{Item, Percentiles};
 
@@ -32,7 +33,7 @@ impl Tally {
             }
             Item::Registers(_) => None,
             Item::Line(line) => {
-                let answer = ["OK ", "ERR "].iter().any(|word| line.starts_with(word));
+                let answer = answer::is_one(line);
                 if !answer {
                     self.other = Some(line.clone());
                 }

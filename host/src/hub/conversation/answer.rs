@@ -1,5 +1,10 @@
 //! Which line answers which question, after `docs/commands.md`.
 
+/// Whether it is an answer, to whatever question.
+pub fn is_one(line: &str) -> bool {
+    line.starts_with("OK ") || line.starts_with("ERR ")
+}
+
 /// What `line` answers to `question`: what follows its `OK`, or the whole `ERR`. None if it answers something
 /// else, as one that comes too late.
 pub fn to(question: &str, line: &str) -> Option<Result<String, String>> {
