@@ -97,7 +97,7 @@ impl PluggedIn {
 }
 
 /// Waits for a reader who is slow; what nobody reads is lost, as on a cable.
-fn write(device: &mut File, mut bytes: &[u8], wanted: &AtomicBool) {
+pub fn write(device: &mut File, mut bytes: &[u8], wanted: &AtomicBool) {
     while !bytes.is_empty() && wanted.load(Ordering::Relaxed) {
         match device.write(bytes) {
             Ok(count) => bytes = &bytes[count..],

@@ -1,19 +1,18 @@
 //! What happens to a recording that does not end as it was meant to.
 
-use std::fs;
-use std::io::{self, Write};
+use std::fs::{self, File};
+use std::io::{self, Read};
 use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use nalgebra::{UnitQuaternion, Vector3};
 use vrduino_host::recording::{Entry, Voice};
 
 use crate::fixture::{Scratch, entries, read, samples};
 use crate::program::{Program, vrduino};
-use crate::pty::{PluggedIn, Pty};
+use crate::pty::{self, PluggedIn, Pty};
 
 /// Nothing here takes so long, even on a busy machine.
 const LIMIT: Duration = Duration::from_secs(120);
@@ -139,51 +138,67 @@ fn a_board_that_goes_and_comes_back_is_one_recording() {
     }
 }
 
-/// The course's firmware says nothing of itself: nothing of it is left out.
+/// Half the angle between two samples of [`course_firmware`], in radians: three decimals tell them apart.
+const HALF_STEP: f64 = 4e-3;
+
+/// After so many samples it begins again, short of half a turn.
+const TICKS: u32 = 750;
+
+/// The course's firmware: samples of 200 Hz known by their angles, no word of itself.
+/// Comes to the number of the sample before which it first heard something.
+fn course_firmware(mut device: File, wanted: &AtomicBool) -> Option<u32> {
+    let mut asked_before = None;
+    for tick in 0_u32.. {
+        if asked_before.is_none() && matches!(device.read(&mut [0; 64]), Ok(1..)) {
+            asked_before = Some(tick);
+        }
+        let half = f64::from(tick % TICKS) * HALF_STEP;
+        let line = format!("QC {:.3} 0.000 {:.3} 0.000\n", half.cos(), half.sin());
+        pty::write(&mut device, line.as_bytes(), wanted);
+        thread::sleep(Duration::from_millis(5));
+        if !wanted.load(Ordering::Relaxed) {
+            break;
+        }
+    }
+    asked_before
+}
+
+/// Nothing is left out of what comes once the port is open: the program's question is its first sign.
 #[test]
 fn a_board_that_does_not_answer_is_recorded_from_its_first_sample_on() {
     let file = Scratch::new("course.csv");
-    let Pty { mut device, path } = Pty::open();
+    let Pty { device, path } = Pty::open();
     let wanted = Arc::new(AtomicBool::new(true));
     let flag = Arc::clone(&wanted);
-    let course = thread::spawn(move || {
-        // Angles by which they are known again; the first is 0.
-        for tick in 0_u32.. {
-            let half = f64::from(tick % 3000) * 1e-3;
-            let (w, y) = (half.cos(), half.sin());
-            let line = format!("QC {w:.3} 0.000 {y:.3} 0.000\n");
-            while device.write_all(line.as_bytes()).is_err() {
-                if !flag.load(Ordering::Relaxed) {
-                    return;
-                }
-                thread::sleep(Duration::from_millis(5));
-            }
-            thread::sleep(Duration::from_millis(5));
-            if !flag.load(Ordering::Relaxed) {
-                return;
-            }
-        }
-    });
+    let course = thread::spawn(move || course_firmware(device, &flag));
     let recorder = Program::start(&["record", "--port", &path, "--seconds", "4", file.path()]);
     let code = recorder.end().code;
     wanted.store(false, Ordering::Relaxed);
-    course.join().expect("it ends");
+    let asked_before = course.join().expect("it ends").expect("a question");
     assert_eq!(code, Some(0));
     let samples = samples(&entries(file.path()));
     assert!(samples.len() > 100, "{}", samples.len());
     let last = samples.len() - 1;
     assert!(samples[last].arrival - samples[0].arrival >= 3.9);
-    for (tick, sample) in samples.iter().enumerate() {
+    let ticks = samples.iter().map(|sample| {
+        let half = sample.orientation.j.atan2(sample.orientation.w);
+        (half / HALF_STEP).round() as u32
+    });
+    let first = ticks.clone().next().expect("a sample");
+    assert!(
+        first <= asked_before,
+        "{first}, asked before {asked_before}"
+    );
+    for ((number, sample), tick) in samples.iter().enumerate().zip(ticks) {
         assert_eq!(
             (sample.sequence, sample.status, sample.delay),
             (None, None, None)
         );
-        assert_eq!(sample.is_first, tick == 0);
-        let angle = tick as f64 * 2e-3;
-        let turned = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angle);
-        assert!(
-            sample.orientation.angle_to(&turned) < 5e-3,
-            "{tick}: {sample:?}"
+        assert_eq!(sample.is_first, number == 0);
+        assert_eq!(
+            tick,
+            (first + number as u32) % TICKS,
+            "{number}: {sample:?}"
         );
     }
 }
