@@ -96,21 +96,29 @@ pub fn reach_the_board(chromium: &Chromium) -> Result<(), Failed> {
 }
 
 pub fn recenter(chromium: &Chromium) -> Result<(), Failed> {
-    let program = Server::view(&["--emulate"]);
+    // By hand, for it stays where it was turned to, however long the click takes.
+    let program = Server::view(&["--emulate", "--motion", "hand"]);
     let mut tab = chromium.open(&program.url())?;
     tab.until(
-        "the head has turned",
-        "vrduino.count > 1000 && Math.abs(vrduino.angles[0]) > 20",
+        "samples arrive",
+        "vrduino.count > 1000 && vrduino.truth",
         START,
     )?;
-    // The truth is not turned with it: by how much the page is off it then is by how much it turned.
+    tab.drag([400.0, 300.0], [500.0, 300.0])?;
+    let turned = "2 * Math.atan2(vrduino.truth.q[2], vrduino.truth.q[0]) > 0.79";
+    tab.until("the sensor has turned", turned, 20)?;
+    tab.until("so has the board", "vrduino.angles[0] > 45", 10)?;
     let yaw = tab.numbers("[vrduino.angles[0]]")?[0];
     tab.click("button[data-act=recenter]")?;
-    let shown = "parseFloat(document.getElementById('truth').textContent) > 10";
-    tab.until("ahead has moved", shown, 20)?;
-    let tilt = tab.numbers(
-        "[parseFloat(/tilt (.*)°/.exec(document.getElementById('truth').textContent)[1])]",
-    )?[0];
+    tab.until("it is ahead", "Math.abs(vrduino.angles[0]) < 1", 20)?;
+    // The truth is not turned with it: by how much the page is off it then is by how much ahead has moved.
+    let shown = "document.getElementById('truth').textContent";
+    tab.until(
+        "ahead has moved as far",
+        &format!("Math.abs(parseFloat({shown}) - {yaw}) < 2"),
+        20,
+    )?;
+    let tilt = tab.numbers(&format!("[parseFloat(/tilt (.*)°/.exec({shown})[1])]"))?[0];
     if tilt > 2.0 {
         return Err(format!("from a yaw of {yaw:.0} deg the tilt is {tilt} deg off").into());
     }
