@@ -1,11 +1,15 @@
 //! Where the stream is to come from, as the user says it.
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::Args;
 
 use crate::source::emulated::{MOTIONS, PartKind};
 use crate::source::{Choice, Emulation, Replay};
+
+// What requires one source says that it conflicts with the others as well: where those are given, clap lets go of the
+// requirement and would take it silently.
 
 /// Which board. Without any of them it is the one that is plugged in.
 #[derive(Clone, Debug, Default, Args)]
@@ -18,16 +22,31 @@ pub struct BoardArguments {
     pub emulate: bool,
     /// What the emulated board is carried through: head, turns, hand, still, tumble, or the file of a motion; head unless the
     /// command wants another
-    #[arg(long, value_name = "MOTION", requires = "emulate")]
+    #[arg(
+        long,
+        value_name = "MOTION",
+        requires = "emulate",
+        conflicts_with = "port"
+    )]
     pub motion: Option<String>,
     /// What is flashed on the emulated board, ELF or Intel HEX, in the place of this repository's firmware
-    #[arg(long, value_name = "FILE", requires = "emulate")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "emulate",
+        conflicts_with = "port"
+    )]
     pub image: Option<PathBuf>,
     /// The emulated sensor
-    #[arg(long, value_name = "KIND", requires = "emulate")]
+    #[arg(
+        long,
+        value_name = "KIND",
+        requires = "emulate",
+        conflicts_with = "port"
+    )]
     pub part: Option<PartKind>,
     /// Which of the typical or worst parts, and which noise [default: 1]
-    #[arg(long, value_name = "N", requires = "part")]
+    #[arg(long, value_name = "N", requires = "part", conflicts_with = "port")]
     pub seed: Option<u64>,
     /// Lets the emulated board run as fast as this computer allows
     #[arg(long, requires = "emulate", hide = true)]
@@ -41,13 +60,21 @@ pub struct SourceArguments {
     #[command(flatten)]
     pub board: BoardArguments,
     /// A recording of `vrduino record`
-    #[arg(long, value_name = "FILE", group = "source")]
+    #[arg(long, value_name = "FILE", group = "source", conflicts_with_all = ["motion", "image", "part", "seed"])]
     pub replay: Option<PathBuf>,
     /// The recording is played so many times as fast as it came
-    #[arg(long, value_name = "TIMES", requires = "replay", default_value_t = 1.0, value_parser = speed)]
+    #[arg(
+        long,
+        value_name = "TIMES",
+        default_value_t = 1.0,
+        value_parser = within(SPEEDS, "times"),
+        allow_negative_numbers = true,
+        requires = "replay",
+        conflicts_with_all = ["port", "emulate"],
+    )]
     pub speed: f64,
     /// When the recording is over it begins again
-    #[arg(long, requires = "replay")]
+    #[arg(long, requires = "replay", conflicts_with_all = ["port", "emulate"])]
     pub repeat: bool,
 }
 
@@ -86,11 +113,22 @@ impl SourceArguments {
     }
 }
 
-/// How many times as fast as it came a recording is played.
-pub fn speed(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(speed) if (0.01..=1000.0).contains(&speed) => Ok(speed),
-        _ => Err("a number from 0.01 to 1000".into()),
+/// How many times as fast as it came a recording can be played.
+pub const SPEEDS: RangeInclusive<f64> = 0.01..=1000.0;
+
+/// Reads a number of these within bounds.
+///
+/// Whoever takes one says `allow_negative_numbers`, or clap calls a minus an unknown option.
+pub fn within(
+    bounds: RangeInclusive<f64>,
+    unit: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| match text.parse() {
+        Ok(value) if bounds.contains(&value) => Ok(value),
+        _ => {
+            let (least, most) = (bounds.start(), bounds.end());
+            Err(format!("give a number of {unit} from {least} to {most}"))
+        }
     }
 }
 

@@ -87,14 +87,13 @@ fn a_board_that_sends_no_orientation_is_told_from_none() {
 
 #[test]
 fn times_that_are_none_are_refused() {
-    for arguments in [
+    for [option, value] in [
         ["--seconds", "-1"],
         ["--seconds", "NaN"],
         ["--interval", "0"],
         ["--interval", "soon"],
     ] {
-        let [option, value] = arguments;
-        let ended = Program::start(&["monitor", &format!("{option}={value}")]).end();
+        let ended = Program::start(&["monitor", option, value]).end();
         assert_eq!(ended.code, Some(2), "{ended:?}");
         assert!(ended.err.contains("give a number of seconds"), "{ended:?}");
     }

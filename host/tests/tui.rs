@@ -229,7 +229,7 @@ fn the_emulated_board_is_seen_to_turn_and_does_what_is_typed() {
     assert!(!text(&again, areas.view).contains("plug"));
 
     // Another motion.
-    running.press('m');
+    running.press('n');
     running.until("quarter turns", |running| {
         running.model.status.motion.as_deref() == Some("turns")
     });

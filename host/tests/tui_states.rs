@@ -36,7 +36,7 @@ fn keys_ask_for_what_they_are_for() {
     assert_eq!(press(&mut model, interrupt), Some(Wish::Quit));
 
     // What is for the emulated board says so, and does nothing.
-    for letter in ['m', 'u'] {
+    for letter in ['n', 'u'] {
         assert_eq!(typed(&mut model, letter), None);
         let notice = model.notice.clone().expect("a reason");
         assert!(notice.contains("emulated"), "{notice}");
@@ -58,7 +58,7 @@ fn keys_ask_for_what_they_are_for() {
         Some(Wish::Order(Order::Plug(false)))
     );
     assert_eq!(
-        typed(&mut model, 'm'),
+        typed(&mut model, 'n'),
         Some(Wish::Order(Order::Motion("hand".into())))
     );
     assert_eq!(press(&mut model, key(KeyCode::Left)), None);
@@ -118,7 +118,7 @@ fn both_eyes_see_the_cube_and_a_turned_head_sees_another_column() {
     let mut model = Model::new();
     model.take(&connected());
     model.take(&stream(UnitQuaternion::identity(), 0.0));
-    assert_eq!(typed(&mut model, 's'), None);
+    assert_eq!(typed(&mut model, 'v'), None);
     let view = areas.view;
     let middle = view.x + view.width / 2;
     let left = within(Rect {
@@ -179,7 +179,7 @@ fn no_size_and_no_state_is_too_much() {
         .into_iter()
         .enumerate()
     {
-        for keys in ["", "s", "sf?", "hsp", "m", "?"] {
+        for keys in ["", "v", "vm?", "hvp", "n", "?"] {
             let mut model = Model::new();
             model.take(&status(|status| {
                 status.state = state;

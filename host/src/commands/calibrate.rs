@@ -22,7 +22,7 @@ use clap::Args;
 use vrduino::calibration::record::Record;
 use vrduino::sensor::magnetometer::SensitivityAdjustment;
 
-use crate::arguments::BoardArguments;
+use crate::arguments::{BoardArguments, within};
 use crate::board::{self, Acquaintance};
 use crate::failure::{Failure, Kind};
 use crate::interrupt::Interrupt;
@@ -57,7 +57,13 @@ pub struct Arguments {
     #[command(flatten)]
     pub source: BoardArguments,
     /// Most seconds for each of the three parts
-    #[arg(long, value_name = "S", default_value_t = 120.0, value_parser = seconds)]
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 120.0,
+        value_parser = within(1.0..=3600.0, "seconds"),
+        allow_negative_numbers = true,
+    )]
     pub seconds: f64,
     /// Hands the result to the board without asking
     #[arg(long, conflicts_with = "dry_run")]
@@ -68,13 +74,6 @@ pub struct Arguments {
     /// Where the picture goes: the directions from which the magnetic field has come
     #[arg(long, value_name = "FILE", default_value = "coverage.svg")]
     pub picture: PathBuf,
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if (1.0..=3600.0).contains(&seconds) => Ok(seconds),
-        _ => Err("give seconds from 1 to 3600".into()),
-    }
 }
 
 /// Guides through it, says what was found, and hands it to the board.

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
-use crate::arguments::SourceArguments;
+use crate::arguments::{SourceArguments, within};
 use crate::failure::Failure;
 use crate::hub::{Hold, Hub, State, Status, Subscription, Update};
 use crate::interrupt::Interrupt;
@@ -38,29 +38,20 @@ pub struct Arguments {
     #[command(flatten)]
     pub source: SourceArguments,
     /// Ends after so many seconds; what the emulated board takes to be built is not counted
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", value_parser = within(0.0..=1e9, "seconds"), allow_negative_numbers = true)]
     pub seconds: Option<f64>,
     /// Seconds between two lines, from 0.1 on
-    #[arg(long, value_name = "S", default_value = "1", value_parser = interval)]
+    #[arg(
+        long,
+        value_name = "S",
+        default_value = "1",
+        value_parser = within(0.1..=86_400.0, "seconds"),
+        allow_negative_numbers = true,
+    )]
     pub interval: f64,
     /// Prints a JSON object a line, for programs
     #[arg(long)]
     pub json: bool,
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    within(text, 0.0, 1e9)
-}
-
-fn interval(text: &str) -> Result<f64, String> {
-    within(text, 0.1, 86_400.0)
-}
-
-fn within(text: &str, least: f64, most: f64) -> Result<f64, String> {
-    match text.parse() {
-        Ok(value) if (least..=most).contains(&value) => Ok(value),
-        _ => Err(format!("give a number of seconds from {least} to {most}")),
-    }
 }
 
 /// Watches until the end, the time, or Ctrl-C.

@@ -53,13 +53,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let draw = format(&output)?;
     let mut reader = Reader::open(&arguments.file)?;
-    let figure = Figure::of(&arguments.file, &mut reader)?;
+    let figure = Figure::of(&arguments.file, &mut reader);
     if let Some(warning) = reader.warning() {
         // Where nobody can read it, it need not be said; here and below.
         let _ = writeln!(io::stderr(), "{warning}");
     }
-    let picture = draw(&figure)?;
+    let picture = draw(&figure?)?;
     fs::write(&output, picture).map_err(|error| {
+        // Half a picture is none. A device stays.
+        if output.is_file() {
+            let _ = fs::remove_file(&output);
+        }
         let sentence = format!("{} cannot be written: {error}", output.display());
         Failure::new(Kind::File, sentence)
     })?;

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::arguments::SourceArguments;
+use crate::arguments::{SourceArguments, within};
 use crate::failure::Failure;
 use crate::hub::{Hold, Hub};
 use crate::interrupt::Interrupt;
@@ -41,7 +41,7 @@ pub struct Arguments {
     #[command(flatten)]
     pub source: SourceArguments,
     /// Ends after so many seconds of the stream
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", value_parser = within(1e-3..=1e9, "seconds"), allow_negative_numbers = true)]
     pub seconds: Option<f64>,
     /// With what the sensor's registers held, the magnetometer's included
     #[arg(long)]
@@ -52,13 +52,6 @@ pub struct Arguments {
     /// Writes over a file that is there already
     #[arg(long)]
     pub force: bool,
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if (1e-3..=1e9).contains(&seconds) => Ok(seconds),
-        _ => Err("a number of seconds above 0".into()),
-    }
 }
 
 /// Records until the end, the time, or Ctrl-C.

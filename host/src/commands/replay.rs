@@ -30,7 +30,13 @@ pub struct Arguments {
     /// A recording of `vrduino record`
     pub file: PathBuf,
     /// So many times as fast as it came
-    #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = arguments::speed)]
+    #[arg(
+        long,
+        value_name = "TIMES",
+        default_value_t = 1.0,
+        value_parser = arguments::within(arguments::SPEEDS, "times"),
+        allow_negative_numbers = true,
+    )]
     pub speed: f64,
     /// When it is over it begins again
     #[arg(long)]

@@ -24,7 +24,7 @@ const AT_ONCE: usize = 4096;
 /// What is asked for.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-Keys: r ahead, b bias, e estimator, + and - its weight, s stereo, h head and neck, f board turned round, p pause, m next motion \
+Keys: r ahead, b bias, e estimator, + and - its weight, v stereo, h head and neck, m board turned round, p pause, n next motion \
 and u plug of the emulated board, arrows turn it if its motion is hand, ? explains them, q quits.
 
 Examples:

@@ -16,7 +16,7 @@ pub struct Line<'a> {
     pub is_whole: bool,
 }
 
-/// Why there is no line.
+/// Why there is no line. But for the first, there may be another behind it.
 #[derive(Debug)]
 pub enum Trouble {
     /// The file cannot be read.
@@ -56,6 +56,9 @@ impl<R: BufRead> Lines<R> {
         self.number += 1;
         let number = self.number;
         if self.bytes.len() > LONGEST {
+            if self.bytes.last() != Some(&b'\n') {
+                self.skip_line().map_err(Trouble::Io)?;
+            }
             return Err(Trouble::TooLong(number));
         }
         let is_whole = self.bytes.last() == Some(&b'\n');
@@ -70,5 +73,19 @@ impl<R: BufRead> Lines<R> {
             text,
             is_whole,
         }))
+    }
+
+    /// To the end of this one, a piece at a time.
+    fn skip_line(&mut self) -> io::Result<()> {
+        loop {
+            let buffer = self.input.fill_buf()?;
+            let end = buffer.iter().position(|&byte| byte == b'\n');
+            let count = end.map_or(buffer.len(), |end| end + 1);
+            let is_over = end.is_some() || buffer.is_empty();
+            self.input.consume(count);
+            if is_over {
+                return Ok(());
+            }
+        }
     }
 }

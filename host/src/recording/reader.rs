@@ -21,6 +21,7 @@ pub struct Reader {
     head: Head,
     rows: Rows,
     ending: Ending,
+    damage: Option<Damage>,
     segment: Option<i32>,
 }
 
@@ -33,6 +34,14 @@ pub struct Ending {
     pub span: Option<(f64, f64)>,
     /// The file is over, and its end is missing.
     pub is_cut: bool,
+}
+
+/// What was passed over for what is whole behind it.
+#[derive(Debug)]
+struct Damage {
+    /// Where the first is and what is wrong with it.
+    first: String,
+    lines: u64,
 }
 
 #[derive(Debug)]
@@ -68,6 +77,7 @@ impl Reader {
             head,
             rows,
             ending: Ending::default(),
+            damage: None,
             segment: None,
         })
     }
@@ -77,11 +87,11 @@ impl Reader {
         &self.head
     }
 
-    /// The next entry; none behind the last that is whole.
+    /// The next entry; none behind the last that is whole. A damaged line is passed over, see [`Reader::warning`].
     ///
     /// # Errors
     ///
-    /// The file cannot be read, or holds something else: where, and what was expected.
+    /// The file cannot be read.
     pub fn read(&mut self) -> Result<Option<Entry>, Failure> {
         match &mut self.rows {
             #[cfg(feature = "parquet")]
@@ -104,37 +114,61 @@ impl Reader {
             let Rows::Csv { lines, has_ended } = &mut self.rows else {
                 return Ok(None);
             };
-            let line = lines
-                .next()
-                .map_err(|trouble| explain(&self.path, &trouble))?;
-            let Some(line) = line else {
-                self.ending.is_cut = !*has_ended;
-                return Ok(None);
+            let line = match lines.next() {
+                Ok(Some(line)) => line,
+                Ok(None) => {
+                    self.ending.is_cut = !*has_ended;
+                    return Ok(None);
+                }
+                Err(trouble @ Trouble::Io(_)) => return Err(explain(&self.path, &trouble)),
+                Err(trouble) => {
+                    let what = explain(&self.path, &trouble).sentence;
+                    self.pass_over(what);
+                    continue;
+                }
             };
-            let wrong = |what: &str| misread(&self.path, line.number, what);
-            if *has_ended {
-                return Err(wrong("nothing should be behind the end marker"));
-            }
-            let said = read(line.text, has_counts);
-            if !line.is_whole && !matches!(said, Ok(Said::End(_))) {
+            let number = line.number;
+            let said = if *has_ended {
+                Err("nothing should be behind the end marker".into())
+            } else {
+                read(line.text, has_counts)
+            };
+            if !line.is_whole && !*has_ended && !matches!(said, Ok(Said::End(_))) {
                 self.ending.is_cut = true;
                 return Ok(None);
             }
-            match said.map_err(|what| wrong(&what))? {
-                Said::Row(row, segment) => {
+            match said {
+                Ok(Said::Row(row, segment)) => {
                     return Ok(Some(Entry::Row(self.count(row, segment))));
                 }
-                Said::Remark(remark) => return Ok(Some(Entry::Remark(remark))),
-                Said::End(samples) if samples != self.ending.samples => {
-                    let found = self.ending.samples;
-                    return Err(wrong(&format!(
-                        "it should hold {samples} samples, and holds {found}: rows were taken out or put in"
-                    )));
+                Ok(Said::Remark(remark)) => return Ok(Some(Entry::Remark(remark))),
+                Ok(Said::End(promised)) => {
+                    *has_ended = true;
+                    if let Some(what) = self.differs_from(promised) {
+                        self.pass_over(misread(&self.path, number, &what).sentence);
+                    }
                 }
-                Said::End(_) => *has_ended = true,
-                Said::Nothing => {}
+                Ok(Said::Nothing) => {}
+                Err(what) => self.pass_over(misread(&self.path, number, &what).sentence),
             }
         }
+    }
+
+    fn pass_over(&mut self, what: String) {
+        let damage = self.damage.get_or_insert(Damage {
+            first: what,
+            lines: 0,
+        });
+        damage.lines += 1;
+    }
+
+    /// Fewer or more rows than the end marker says, where damaged lines do not account for it.
+    fn differs_from(&self, promised: u64) -> Option<String> {
+        let found = self.ending.samples;
+        let damaged = self.damage.as_ref().map_or(0, |damage| damage.lines);
+        (promised < found || promised > found + damaged).then(|| {
+            format!("it should hold {promised} samples, and holds {found}: rows were taken out or put in")
+        })
     }
 
     fn count(&mut self, mut row: Row, segment: i32) -> Row {
@@ -151,7 +185,7 @@ impl Reader {
         self.ending
     }
 
-    /// What is to be said of a file whose end is missing.
+    /// What is to be said of a file that is not whole, as far as it has been read.
     pub fn warning(&self) -> Option<String> {
         let path = self.path.display();
         let Ending {
@@ -160,9 +194,19 @@ impl Reader {
             is_cut,
         } = self.ending;
         let seconds = span.map_or(0.0, |(began, ended)| ended - began);
-        is_cut.then(|| {
+        let cut = is_cut.then(|| {
             format!("{path} is cut off: its {samples} samples of {seconds:.1} s are read, and what came behind is missing")
-        })
+        });
+        let damaged = self.damage.as_ref().map(|Damage { first, lines }| {
+            let more = match lines - 1 {
+                0 => String::new(),
+                1 => " (and one more line)".into(),
+                more => format!(" (and {more} more lines)"),
+            };
+            format!("{first}{more}; the {samples} samples that are whole are read")
+        });
+        let said: Vec<_> = damaged.into_iter().chain(cut).collect();
+        (!said.is_empty()).then(|| said.join("; "))
     }
 }
 
@@ -180,7 +224,9 @@ fn read_head(path: &Path, lines: &mut Lines<BufReader<File>>) -> Result<Head, Fa
         let line = line.ok_or_else(cut)?;
         let wrong = |what: &str| misread(path, line.number, what);
         if line.number == 1 {
-            match line.text.strip_prefix(SIGNATURE).map(str::parse) {
+            // Editors of some systems put it before any text.
+            let text = line.text.trim_start_matches('\u{FEFF}');
+            match text.strip_prefix(SIGNATURE).map(str::parse) {
                 Some(Ok(VERSION)) => {}
                 _ if !line.is_whole && SIGNATURE.starts_with(line.text) => return Err(cut()),
                 Some(Ok(other)) => return Err(other_version(path, other)),

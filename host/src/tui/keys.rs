@@ -26,7 +26,7 @@ pub enum Wish {
     Quit,
 }
 
-/// The keys, and what they do, in the order in which they are explained.
+/// The keys, those of the page where it has the same, and what they do, in the order in which they are explained.
 pub const KEYS: [(&str, &str); 15] = [
     (
         "r",
@@ -39,7 +39,7 @@ pub const KEYS: [(&str, &str); 15] = [
         "tilt-time longer, shorter (notes' estimator: its weight α)",
     ),
     (
-        "s",
+        "v",
         "stereo: look through the headset with both eyes, or at the board",
     ),
     (
@@ -47,11 +47,11 @@ pub const KEYS: [(&str, &str); 15] = [
         "head and neck: turn about the neck (algorithm 3) or the eyes (2)",
     ),
     (
-        "f",
+        "m",
         "the board is fixed to the headset's front, turned by 180°",
     ),
     ("p", "pause the picture; what comes is still counted"),
-    ("m", "the emulated board's next motion"),
+    ("n", "the emulated board's next motion"),
     ("arrows", "turn the emulated board, if its motion is “hand”"),
     ("u", "pull the emulated board's plug, or put it back"),
     ("Enter", "start the emulated board, where none is there"),
@@ -74,9 +74,9 @@ pub fn press(model: &mut Model, key: KeyEvent) -> Option<Wish> {
         KeyCode::Esc if model.shows_help => model.shows_help = false,
         KeyCode::Esc => return Some(Wish::Quit),
         KeyCode::Char('?') => model.shows_help = !model.shows_help,
-        KeyCode::Char('s') => model.is_stereo = !model.is_stereo,
+        KeyCode::Char('v') => model.is_stereo = !model.is_stereo,
         KeyCode::Char('h') => model.has_neck = !model.has_neck,
-        KeyCode::Char('f') => model.is_turned_round = !model.is_turned_round,
+        KeyCode::Char('m') => model.is_turned_round = !model.is_turned_round,
         KeyCode::Char('p') => model.is_paused = !model.is_paused,
         KeyCode::Char('c') => model.lines.clear(),
         KeyCode::Enter => return emulate(model),
@@ -86,7 +86,7 @@ pub fn press(model: &mut Model, key: KeyEvent) -> Option<Wish> {
         KeyCode::Char('e') => return change_estimator(model),
         KeyCode::Char('+' | '=') => return change_weight(model, 1.25),
         KeyCode::Char('-' | '_') => return change_weight(model, 1.0 / 1.25),
-        KeyCode::Char('m') => return next_motion(model),
+        KeyCode::Char('n') => return next_motion(model),
         KeyCode::Char('u') => {
             let plugged = model.status.state == State::Connected;
             return to_emulated(model).then_some(Wish::Order(Order::Plug(!plugged)));
@@ -202,7 +202,7 @@ fn turn(model: &mut Model, [yaw, pitch]: [f64; 2]) -> Option<Wish> {
     if model.status.motion.as_deref() != Some("hand") {
         refuse(
             model,
-            "the arrows turn the board if its motion is “hand”: press m until it is",
+            "the arrows turn the board if its motion is “hand”: press n until it is",
         );
         return None;
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use vrduino_host::failure::{Failure, Kind};
+use vrduino_host::failure::Kind;
 use vrduino_host::recording::{Entry, Head, Reader};
 
 use crate::fixture::{Random, Scratch, assert_same, entries, read, row, samples, turned, write};
@@ -21,20 +21,13 @@ fn head(has_counts: bool) -> Head {
     }
 }
 
-/// Whatever there is wrong with it.
-fn failure(content: impl AsRef<[u8]>, name: &str) -> Failure {
+/// How many samples of it can be read, and what is said of the rest.
+fn salvaged(content: impl AsRef<[u8]>, name: &str) -> (u64, String) {
     let file = Scratch::with(name, content);
-    let mut reader = match Reader::open(&file.0) {
-        Ok(reader) => reader,
-        Err(failure) => return failure,
-    };
-    loop {
-        match reader.read() {
-            Ok(Some(_)) => {}
-            Ok(None) => panic!("nothing is wrong with it: {:?}", reader.ending()),
-            Err(failure) => return failure,
-        }
-    }
+    let mut reader = Reader::open(&file.0).expect("its head is right");
+    while reader.read().expect("it can be read").is_some() {}
+    let warning = reader.warning().expect("something is wrong with it");
+    (reader.ending().samples, warning)
 }
 
 fn short() -> String {
@@ -80,17 +73,16 @@ fn cut_off_anywhere_it_gives_what_is_whole_and_says_so() {
     let head = whole.find("\ntime_s").expect("a header");
     let rows = head + whole[head + 1..].find('\n').expect("an end") + 2;
     for cut in 0..whole.len() {
-        let name = format!("cut-{cut}.csv");
         let part = &whole[..cut];
+        let file = Scratch::with(&format!("cut-{cut}.csv"), part);
         if cut < rows {
-            let failure = failure(part, &name);
+            let failure = Reader::open(&file.0).expect_err("nothing is in it");
             assert!(
                 failure.sentence.contains("cut off before its first sample"),
                 "{cut}: {failure}"
             );
             continue;
         }
-        let file = Scratch::with(&name, part);
         let (entries, warning) = read(file.path());
         let expected = part[rows..].matches('\n').count();
         assert_eq!(entries.len(), expected.min(12), "{cut}");
@@ -108,92 +100,132 @@ fn cut_off_anywhere_it_gives_what_is_whole_and_says_so() {
 }
 
 #[test]
-fn what_is_no_recording_is_told_where_and_why() {
+fn what_is_no_recording_is_told() {
     let whole = short();
-    let put = |from: &str, to: &str| whole.replacen(from, to, 1);
-    let line = |number: usize, text: &str| {
-        let mut lines: Vec<_> = whole.lines().collect();
-        lines[number - 1] = text;
-        lines.join("\n") + "\n"
-    };
-    let header = 1 + whole
-        .lines()
-        .position(|l| l.starts_with("time_s"))
-        .expect("it");
-    let first = header + 1;
-    let at = format!("line {first}: ");
-    let long = "1".repeat(5000);
-    let row = "0.001,0.004,0,1,1,0,0,0,0.1,0,0,0,unused,0,0,0";
+    let header = whole.lines().find(|l| l.starts_with("time_s")).expect("it");
     let cases = [
         (
-            put("recording 1\n", "recording 2\n"),
+            whole.replacen("recording 1\n", "recording 2\n", 1),
             "a recording of version 2, and this program reads version 1",
         ),
         (String::from("t,gx,gy,gz\n1,2,3,4\n"), "is no recording"),
-        (long.clone(), "is no recording"),
+        ("1".repeat(5000), "is no recording"),
         (
-            line(header, "time,w,x,y,z"),
+            whole.replacen(header, "time,w,x,y,z", 1),
             "the columns should be time_s,arrival_s",
-        ),
-        (
-            line(first, "rubbish"),
-            "time_s should be a number, and is `rubbish`",
-        ),
-        (
-            line(first, &row.replace("0.001", "nan")),
-            "time_s should be a number, and is `nan`",
-        ),
-        (
-            line(first, &row.replace("0.001", "1e300")),
-            "time_s cannot be 1",
-        ),
-        (
-            line(first, &row.replace("unused", "on")),
-            "compass should be absent, unused",
-        ),
-        (
-            line(first, &row.replace("1,1,0,0,0", "70000,1,0,0,0")),
-            "sequence cannot be 70000",
-        ),
-        (
-            line(first, &row.replace("1,1,0,0,0", "1,3,0,0,0")),
-            "a quaternion of length 1",
-        ),
-        (
-            line(first, &row.replace("0,0,0,unused", ",0,0,unused")),
-            "repeated is missing",
-        ),
-        (
-            line(first, "1,2,3"),
-            "16 fields are expected, and 3 are there",
-        ),
-        (
-            line(first, &format!("{row},7")),
-            "16 fields are expected, and 17 are there",
-        ),
-        (line(first, &long), "no line of a recording is so long"),
-        (
-            whole.clone() + row + "\n",
-            "nothing should be behind the end marker",
-        ),
-        (
-            put("# end, 12", "# end, 13"),
-            "it should hold 13 samples, and holds 12",
         ),
     ];
     for (number, (content, expected)) in cases.iter().enumerate() {
-        let failure = failure(content, &format!("wrong-{number}.csv"));
+        let file = Scratch::with(&format!("wrong-{number}.csv"), content);
+        let failure = Reader::open(&file.0).expect_err(expected);
         assert_eq!(failure.kind, Kind::File);
         assert!(failure.sentence.contains(expected), "{expected}: {failure}");
-        if content.lines().nth(first - 1) != whole.lines().nth(first - 1) && number > 3 {
-            assert!(failure.sentence.contains(&at), "{failure}");
-        }
     }
-    let mut bytes = whole.clone().into_bytes();
-    let place = bytes.len() - 30;
-    bytes[place] = 0xFF;
-    let failure = failure(&bytes, "bytes.csv");
-    assert!(failure.sentence.contains("text is expected"), "{failure}");
+}
+
+/// The line is named, and all others are read.
+#[test]
+fn a_damaged_line_takes_nothing_else_with_it() {
+    let whole = short();
+    let lines: Vec<_> = whole.lines().collect();
+    let first = 1 + lines
+        .iter()
+        .position(|l| l.starts_with("time_s"))
+        .expect("it");
+    let with = |damaged: &[u8]| {
+        let mut bytes = Vec::new();
+        for (place, line) in lines.iter().enumerate() {
+            let line = if place == first {
+                damaged
+            } else {
+                line.as_bytes()
+            };
+            bytes.extend([line, b"\n"].concat());
+        }
+        bytes
+    };
+    let row = "0.001,0.004,0,1,1,0,0,0,0.1,0,0,0,unused,0,0,0";
+    let cases = [
+        (
+            "rubbish".into(),
+            "time_s should be a number, and is `rubbish`",
+        ),
+        (
+            row.replace("0.001", "nan"),
+            "time_s should be a number, and is `nan`",
+        ),
+        (row.replace("0.001", "1e300"), "time_s cannot be 1"),
+        (
+            row.replace("unused", "on"),
+            "compass should be absent, unused",
+        ),
+        (
+            row.replace("1,1,0,0,0", "70000,1,0,0,0"),
+            "sequence cannot be 70000",
+        ),
+        (
+            row.replace("1,1,0,0,0", "1,3,0,0,0"),
+            "a quaternion of length 1",
+        ),
+        (
+            row.replace("0,0,0,unused", ",0,0,unused"),
+            "repeated is missing",
+        ),
+        ("1,2,3".into(), "16 fields are expected, and 3 are there"),
+        (
+            format!("{row},7"),
+            "16 fields are expected, and 17 are there",
+        ),
+        ("1".repeat(5000), "no line of a recording is so long"),
+        ("1".repeat(50_000), "no line of a recording is so long"),
+    ];
+    let at = format!("line {}: ", first + 1);
+    for (number, (damaged, expected)) in cases.iter().enumerate() {
+        let name = format!("damaged-{number}.csv");
+        let (samples, warning) = salvaged(with(damaged.as_bytes()), &name);
+        assert!(warning.contains(&at), "{warning}");
+        assert!(warning.contains(expected), "{expected}: {warning}");
+        assert!(
+            warning.contains("the 11 samples that are whole"),
+            "{warning}"
+        );
+        assert_eq!(samples, 11, "{warning}");
+    }
+    let (samples, warning) = salvaged(with(b"\xFF\xFE"), "bytes.csv");
+    assert_eq!(samples, 11);
+    assert!(warning.contains("text is expected"), "{warning}");
+}
+
+#[test]
+fn rows_that_are_too_many_or_too_few_are_told() {
+    let whole = short();
+    let row = "0.001,0.004,0,1,1,0,0,0,0.1,0,0,0,unused,0,0,0\n";
+    let (samples, warning) = salvaged(whole.clone() + row + row, "behind.csv");
+    assert_eq!(samples, 12);
+    assert!(
+        warning.contains("nothing should be behind the end marker (and one more line)"),
+        "{warning}"
+    );
+    let (samples, warning) = salvaged(whole.replacen("# end, 12", "# end, 13", 1), "fewer.csv");
+    assert_eq!(samples, 12);
+    assert!(
+        warning.contains("it should hold 13 samples, and holds 12"),
+        "{warning}"
+    );
+    let (samples, warning) = salvaged(whole.replacen("# end, 12", "# end, 11", 1), "more.csv");
+    assert_eq!(samples, 12);
+    assert!(
+        warning.contains("it should hold 11 samples, and holds 12"),
+        "{warning}"
+    );
+}
+
+/// As some editors save it.
+#[test]
+fn a_byte_order_mark_and_other_line_ends_do_no_harm() {
+    let windows = format!("\u{FEFF}{}", short().replace('\n', "\r\n"));
+    let file = Scratch::with("windows.csv", windows);
+    assert_eq!(samples(&entries(file.path())).len(), 12);
 }
 
 #[test]

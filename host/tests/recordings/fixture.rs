@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use nalgebra::{Quaternion, UnitQuaternion};
 use vrduino::sensor::RawSample;
@@ -18,11 +19,14 @@ use crate::program::vrduino;
 pub struct Scratch(pub PathBuf);
 
 impl Scratch {
+    /// Its own, even if several tests call theirs so.
     pub fn new(name: &str) -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
         let (stem, ending) = name.split_once('.').unwrap_or((name, ""));
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-        let id = std::process::id();
-        Self(folder.join(format!("recordings-{stem}-{id}.{ending}")))
+        let program = std::process::id();
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        Self(folder.join(format!("recordings-{stem}-{program}-{count}.{ending}")))
     }
 
     pub fn with(name: &str, content: impl AsRef<[u8]>) -> Self {

@@ -52,9 +52,9 @@ pub fn keys(frame: &mut Frame, model: &Model, area: Rect) {
         ("r", "ahead"),
         ("b", "bias"),
         ("e", "estimator"),
-        ("s", "stereo"),
+        ("v", "stereo"),
         ("p", "pause"),
-        ("m", "motion"),
+        ("n", "motion"),
         ("u", "plug"),
         ("+ -", "tilt"),
     ];
