@@ -1,6 +1,7 @@
 //! Why a command ends: a sentence that says what to do, and an exit code.
 
 use std::fmt;
+use std::io;
 use std::process::ExitCode;
 
 /// What went wrong. The number is the program's exit code; 2 is a mistake on the command line.
@@ -57,3 +58,9 @@ impl fmt::Display for Failure {
 }
 
 impl std::error::Error for Failure {}
+
+/// Whether a read or a write with a time limit has only had no turn yet: to be tried again.
+pub(crate) fn is_not_yet(error: &io::Error) -> bool {
+    use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
+    matches!(error.kind(), Interrupted | TimedOut | WouldBlock)
+}

@@ -9,7 +9,7 @@ use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
 use super::{Event, Gone, Listener, Order};
-use crate::failure::{Failure, Kind};
+use crate::failure::{Failure, Kind, is_not_yet};
 pub use search::{Found, MANUFACTURER, boards, find, ports};
 pub use trouble::{Cause, UDEV_RULE};
 
@@ -75,7 +75,7 @@ fn read(link: &mut dyn Link, listener: &mut Listener, began: Instant) -> Result<
                 let bytes = buffer[..count].to_vec();
                 listener.tell(Event::Bytes { at, bytes })?;
             }
-            Err(error) if is_patient(&error) => {}
+            Err(error) if is_not_yet(&error) => {}
             Err(error) => return Ok(error),
         }
     }
@@ -88,18 +88,11 @@ fn send(link: &mut dyn Link, mut bytes: &[u8]) -> io::Result<()> {
         match link.write(bytes) {
             Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
             Ok(count) => bytes = &bytes[count..],
-            Err(error) if is_patient(&error) && Instant::now() < until => {}
+            Err(error) if is_not_yet(&error) && Instant::now() < until => {}
             Err(error) => return Err(error),
         }
     }
     Ok(())
-}
-
-fn is_patient(error: &io::Error) -> bool {
-    matches!(
-        error.kind(),
-        io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted
-    )
 }
 
 /// What can be read and written with a time limit.

@@ -1,6 +1,7 @@
 //! How a stream goes: how many, how late, and what was lost.
 
 use std::collections::VecDeque;
+use std::fmt;
 
 use vrduino::wire::decoder::Losses;
 
@@ -16,6 +17,19 @@ pub struct Percentiles {
     pub p99: f64,
     /// The worst (s).
     pub max: f64,
+}
+
+/// In milliseconds, to hundredths where that is more than noise.
+impl fmt::Display for Percentiles {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ms = |seconds: f64| {
+            let ms = seconds * 1e3;
+            let digits = if ms < 10.0 { 2 } else { 0 };
+            format!("{ms:.digits$}")
+        };
+        let Self { p50, p99, max } = *self;
+        write!(f, "p50 {} p99 {} max {}", ms(p50), ms(p99), ms(max))
+    }
 }
 
 /// How a stream goes.

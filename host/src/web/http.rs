@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 
 use tungstenite::http::{self, Method, StatusCode, Version};
 
+use crate::failure::is_not_yet;
+
 /// A request; a body is neither wanted nor read.
 pub type Request = http::Request<()>;
 
@@ -95,15 +97,10 @@ pub fn read(
         match stream.read(&mut chunk[..room]) {
             Ok(0) => return Ok(None),
             Ok(count) => head.extend_from_slice(&chunk[..count]),
-            Err(error) if is_patient(&error) => {}
+            Err(error) if is_not_yet(&error) => {}
             Err(_) => return Ok(None),
         }
     }
-}
-
-pub(super) fn is_patient(error: &io::Error) -> bool {
-    use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
-    matches!(error.kind(), Interrupted | TimedOut | WouldBlock)
 }
 
 /// The head and its length, once all of it is there.

@@ -14,6 +14,7 @@ use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket};
 
 use super::http::{self, Incoming, Response};
+use crate::failure::is_not_yet;
 
 /// Of what a page has to say.
 const MESSAGE: usize = 4 * 1024;
@@ -117,7 +118,7 @@ impl Socket {
     fn went(&mut self, result: Result<(), Error>) -> Result<(), Over> {
         match result {
             Ok(()) => self.stuck = None,
-            Err(Error::Io(error)) if http::is_patient(&error) => {
+            Err(Error::Io(error)) if is_not_yet(&error) => {
                 let since = *self.stuck.get_or_insert_with(Instant::now);
                 if since.elapsed() > PATIENCE {
                     return Err(Over::TooSlow);
@@ -139,7 +140,7 @@ impl Socket {
             Ok(Message::Text(text)) => Ok(Some(text.as_str().to_owned())),
             // Answered by the library, or said by nobody whom this is for.
             Ok(_) => Ok(None),
-            Err(Error::Io(error)) if http::is_patient(&error) => Ok(None),
+            Err(Error::Io(error)) if is_not_yet(&error) => Ok(None),
             Err(_) => Err(Over::Left),
         }
     }
@@ -164,7 +165,7 @@ impl Socket {
     ) -> bool {
         match act(&mut self.socket) {
             Ok(()) => true,
-            Err(Error::Io(error)) => http::is_patient(&error),
+            Err(Error::Io(error)) => is_not_yet(&error),
             Err(_) => false,
         }
     }

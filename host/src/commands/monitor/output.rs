@@ -183,27 +183,18 @@ fn losses(report: &Report) -> Value {
 
 fn in_words(delay: Option<Percentiles>) -> String {
     match delay {
-        Some(delay) => format!(
-            "p50 {:.2}, p99 {:.2}, max {:.2} ms behind the fastest",
-            delay.p50 * 1e3,
-            delay.p99 * 1e3,
-            delay.max * 1e3
-        ),
+        Some(delay) => format!("{delay} ms behind the fastest"),
         None => "unknown: the stream has no device time".into(),
     }
 }
 
+fn in_short(delay: Option<Percentiles>) -> String {
+    delay.map_or("delay unknown".into(), |delay| format!("delay {delay} ms"))
+}
+
 /// All of it, as a line of a log.
 fn full(source: &str, report: &Report, words: &[&str]) -> String {
-    let delay = match report.delay {
-        Some(delay) => format!(
-            "delay p50 {:.2} p99 {:.2} max {:.2} ms",
-            delay.p50 * 1e3,
-            delay.p99 * 1e3,
-            delay.max * 1e3
-        ),
-        None => "delay unknown".into(),
-    };
+    let delay = in_short(report.delay);
     format!(
         "{source}: {:.1} a second, {delay}, missing {}, CRC errors {}, malformed {}, thrown away {} bytes, restarts {}; {}",
         report.rate,
@@ -218,15 +209,7 @@ fn full(source: &str, report: &Report, words: &[&str]) -> String {
 
 /// What fits on a terminal: what is nought is left out.
 fn short(report: &Report, words: &[&str]) -> String {
-    let delay = match report.delay {
-        Some(delay) => format!(
-            "delay {:.2}, {:.2}, {:.2} ms",
-            delay.p50 * 1e3,
-            delay.p99 * 1e3,
-            delay.max * 1e3
-        ),
-        None => "delay unknown".into(),
-    };
+    let delay = in_short(report.delay);
     let losses: Vec<String> = [
         (report.missing, "missing"),
         (report.damaged, "CRC errors"),

@@ -1,8 +1,9 @@
 //! What is to be thought of a stream, and what to do about it.
 
 use super::tally::Tally;
-use crate::failure::{Failure, Kind};
+use crate::failure::{self, Failure};
 use crate::hub::{State, Status};
+use crate::source::Kind;
 
 /// Later than this, a picture stutters (s).
 const LATE: f64 = 0.020;
@@ -34,12 +35,13 @@ pub fn findings(status: &Status, tally: &Tally) -> Vec<String> {
             report.restarts
         ),
     );
+    let why = match status.kind {
+        Some(Kind::Replay) => "the recording does not have them",
+        _ => "this computer did not read in time, so close what else keeps it busy",
+    };
     find(
         report.missing > 0,
-        format!(
-            "samples missing, {}: this computer did not read in time, so close what else keeps it busy",
-            report.missing
-        ),
+        format!("samples missing, {}: {why}", report.missing),
     );
     find(
         report.damaged > 0,
@@ -111,7 +113,7 @@ pub fn no_board(status: &Status) -> Failure {
     let failure = status.trouble.clone();
     failure.unwrap_or_else(|| {
         Failure::new(
-            Kind::Board,
+            failure::Kind::Board,
             "no board was found in that time: connect it by USB, or take --emulate for the emulated board",
         )
     })
@@ -138,7 +140,7 @@ pub fn no_samples(status: &Status, tally: &Tally) -> Failure {
             "{source} sends nothing: is it the right port (`vrduino list`), and is vrduino on the board (`vrduino flash`)?"
         )
     };
-    Failure::new(Kind::Stream, sentence)
+    Failure::new(failure::Kind::Stream, sentence)
 }
 
 #[cfg(test)]

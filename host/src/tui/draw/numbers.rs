@@ -62,19 +62,11 @@ fn known(value: Option<String>) -> String {
 }
 
 fn delay(status: &Status) -> String {
-    let Some(delay) = status.report.delay else {
-        return "not known: no device time".into();
-    };
     // The fastest are the zero; see `vrduino monitor --help`.
-    let [p50, p99, max] = [delay.p50, delay.p99, delay.max].map(|seconds| {
-        let ms = seconds * 1e3;
-        if ms < 10.0 {
-            format!("{ms:.2}")
-        } else {
-            format!("{ms:.0}")
-        }
-    });
-    format!("p50 {p50} p99 {p99} max {max}")
+    let delay = status.report.delay;
+    delay.map_or("not known: no device time".into(), |delay| {
+        delay.to_string()
+    })
 }
 
 fn losses(status: &Status) -> Line<'static> {
