@@ -60,10 +60,21 @@ pub fn phone(chromium: &Chromium) -> Result<(), Failed> {
     let program = Server::view(&["--emulate"]);
     let mut tab = chromium.open_as(&program.url(), Size::PHONE, "")?;
     tab.until("samples arrive", "vrduino.count > 1000", START)?;
-    let fits =
-        "document.documentElement.scrollWidth <= window.innerWidth && window.innerWidth === 390";
-    tab.until("nothing is wider than the screen", fits, 5)?;
-    tab.picture("page-phone.png")?;
+    for (size, name) in [
+        (Size::SMALL_PHONE, "page-phone-small.png"),
+        (Size::SIDEWAYS, "page-phone-sideways.png"),
+        (Size::PHONE, "page-phone.png"),
+    ] {
+        tab.resize(size)?;
+        let Size(width, height, _) = size;
+        let fits =
+            format!("innerWidth === {width} && document.documentElement.scrollWidth <= {width}");
+        tab.until("nothing is wider than the screen", &fits, 5)?;
+        let whole =
+            format!("document.getElementById('stage').getBoundingClientRect().bottom <= {height}");
+        tab.until("the picture is on it as a whole", &whole, 5)?;
+        tab.picture(name)?;
+    }
     // A finger goes round the board: the label of ahead is where it leads.
     let place = "document.querySelector('#labels [data-axis=ahead]').style.transform";
     let before = tab.eval(place)?;

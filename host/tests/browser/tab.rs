@@ -22,6 +22,14 @@ impl Size {
     pub const DESK: Self = Self(1280, 800, 1);
     /// A phone's.
     pub const PHONE: Self = Self(390, 844, 2);
+    /// The same, on its side.
+    pub const SIDEWAYS: Self = Self(844, 390, 2);
+    /// The smallest there are.
+    pub const SMALL_PHONE: Self = Self(320, 568, 2);
+
+    fn is_phone(self) -> bool {
+        self.0.min(self.1) < 500
+    }
 }
 
 /// A page. Whatever the browser reports as an error in it fails the test that closes it.
@@ -42,7 +50,6 @@ impl Tab {
         size: Size,
         script: &str,
     ) -> Result<Self, Failed> {
-        let Size(width, height, scale) = size;
         let new = |socket| Self {
             socket,
             last: 0,
@@ -58,15 +65,12 @@ impl Tab {
         for domain in ["Runtime.enable", "Log.enable", "Page.enable"] {
             tab.call(domain, &json!({}))?;
         }
-        let metrics = json!({
-            "width": width, "height": height, "deviceScaleFactor": scale, "mobile": width < 500,
-        });
-        tab.call("Emulation.setDeviceMetricsOverride", &metrics)?;
+        tab.resize(size)?;
         tab.call(
             "Emulation.setFocusEmulationEnabled",
             &json!({"enabled": true}),
         )?;
-        if width < 500 {
+        if size.is_phone() {
             tab.call(
                 "Emulation.setTouchEmulationEnabled",
                 &json!({"enabled": true}),
@@ -80,6 +84,16 @@ impl Tab {
         tab.call("Page.navigate", &json!({"url": url}))?;
         tab.until("the page has started", "'vrduino' in window", 60)?;
         Ok(tab)
+    }
+
+    /// Another screen, or the same held otherwise.
+    pub fn resize(&mut self, size: Size) -> Result<(), Failed> {
+        let Size(width, height, scale) = size;
+        let metrics = json!({
+            "width": width, "height": height, "deviceScaleFactor": scale, "mobile": size.is_phone(),
+        });
+        self.call("Emulation.setDeviceMetricsOverride", &metrics)?;
+        Ok(())
     }
 
     /// What the system is set to, light or dark.
