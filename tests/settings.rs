@@ -26,7 +26,7 @@ fn every_verb_is_answered() {
         (":compass on", "OK compass on: no field\n"),
         (":set tilt-time 2.5", "OK tilt-time 2.5000 s\n"),
         (":get tilt-time", "OK tilt-time 2.5000 s\n"),
-        (":set notes-alpha 0.9", "OK notes-alpha 0.9000\n"),
+        (":set notes-alpha 0.9", "OK notes-alpha 0.900000\n"),
         (":get notes-time", "OK notes-time 0.0090 s\n"),
         (":defaults", "OK defaults\n"),
         (":get notes-time", "OK notes-time 7.6000 s\n"),

@@ -88,11 +88,13 @@ pub fn reach(
         (status.state == State::Connected).then(|| std::sync::Arc::new(status.clone()))
     };
     let mut trouble = None;
+    let mut has_ended = false;
     let mut found = wait(updates, patience.unwrap_or(PATIENCE), |status| {
         trouble.clone_from(&status.trouble);
+        has_ended = status.state == State::Ended;
         connected(status)
     });
-    if found.is_none() && patience.is_none() {
+    if found.is_none() && patience.is_none() && !has_ended {
         if let Some(trouble) = &trouble {
             // Where nobody can read it, it need not be said.
             let _ = writeln!(io::stderr(), "{trouble}");

@@ -57,6 +57,14 @@ impl Setting {
         }
     }
 
+    /// Of its value, as the board answers it: of a weight close to 1, what matters is what it lacks.
+    pub const fn decimals(self) -> u32 {
+        match self {
+            Self::NotesAlpha => 6,
+            _ => 4,
+        }
+    }
+
     /// Least and greatest value.
     pub const fn range(self) -> [f32; 2] {
         match self {

@@ -151,8 +151,8 @@ impl<M: Multiply> Tracker<M> {
 }
 
 fn value<M: Multiply>(estimators: &Estimators<M>, setting: Setting) -> Line {
-    let name = setting.name();
-    wire::answer(name, estimators.get(setting), setting.unit())
+    let value = estimators.get(setting);
+    wire::answer(setting.name(), value, setting.decimals(), setting.unit())
 }
 
 /// What the gyro reads at rest, and how that is known.

@@ -123,13 +123,13 @@ pub fn magnetometer_failed(error: &impl fmt::Display) -> Line {
     text(format_args!("Magnetometer: {error}, running on six axes"))
 }
 
-/// `OK NAME value unit`, 4 decimals: a setting.
-pub fn answer(name: &str, value: f32, unit: &str) -> Line {
+/// `OK NAME value unit`: a setting, with so many decimals.
+pub fn answer(name: &str, value: f32, decimals: u32, unit: &str) -> Line {
     let mut line = Line::new();
     push(&mut line, "OK ");
     push(&mut line, name);
     push(&mut line, " ");
-    push_decimal(&mut line, value, 4);
+    push_decimal(&mut line, value, decimals);
     if !unit.is_empty() {
         push(&mut line, " ");
         push(&mut line, unit);

@@ -180,6 +180,11 @@ fn settle(
     }
     let known = keep::hand_over(board, record)?;
     let known = known.strip_prefix("calibration: ").unwrap_or(&known);
+    // The board tells of field and force only.
+    let known = match known {
+        "none" => "the gyro's bias; field and force are as the sensor was made",
+        known => known,
+    };
     output.say(format!("the board keeps it: {known}"));
     Ok(true)
 }

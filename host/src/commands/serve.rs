@@ -153,7 +153,9 @@ impl<'a> Desk<'a> {
             match update {
                 Update::Status(status) => {
                     let sentence = status.sentence();
-                    if sentence != self.said {
+                    // Why it has ended is the result.
+                    let has_failed = status.state == State::Ended && status.trouble.is_some();
+                    if sentence != self.said && !has_failed {
                         self.say(&sentence);
                         self.said = sentence;
                     }

@@ -18,7 +18,7 @@ const SETTINGS = {
   // How much the accelerometer has in a sample, 1 − α, goes by factors.
   "notes-alpha": {
     value: (place) => 1 - 10 ** -place, place: (value) => -Math.log10(Math.max(1 - value, 1e-6)),
-    typed: (value) => value.toFixed(6), shown: (value) => String(Number(value.toFixed(5))),
+    typed: (value) => value.toFixed(6), shown: (value) => String(Number(value.toFixed(6))),
   },
 };
 

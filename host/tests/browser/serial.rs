@@ -21,7 +21,7 @@ const MOCK: &str = "(() => {
     const answers = {
         ':help': 'OK verbs: help version',
         ':estimator': 'OK estimator notes', ':get tilt-time': 'OK tilt-time 4.0000 s',
-        ':get notes-alpha': 'OK notes-alpha 0.9900',
+        ':get notes-alpha': 'OK notes-alpha 0.990000',
     };
     const answer = (line) => {
         const [verb, value] = line.split(' ');

@@ -215,6 +215,8 @@ impl<'a> Session<'a> {
         let (before, now) = (self.status.state, status.state);
         if let Some(trouble) = &status.trouble
             && self.status.trouble.as_ref() != Some(trouble)
+            // With nothing to note it in, it is the result.
+            && !(now == State::Ended && self.first.is_none())
         {
             self.note(&trouble.sentence);
         } else if now == State::Connected && before == State::Lost {
