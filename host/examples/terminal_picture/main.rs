@@ -2,7 +2,7 @@
 //!
 //! ```console
 //! $ cargo run -p vrduino-host --example terminal_picture
-//! $ cargo run -p vrduino-host --example terminal_picture -- FILE 100x30 s
+//! $ cargo run -p vrduino-host --example terminal_picture -- FILE 100x30 v
 //! ```
 //!
 //! The second makes it elsewhere, of another size, after these keys were pressed. Nothing in it is made
