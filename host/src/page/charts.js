@@ -1,9 +1,11 @@
 // Strip charts: the last ten seconds, drawn from the columns of history.js.
 
-import { COLUMN, COLUMNS } from "./history.js";
+import { COLUMNS } from "./history.js";
+import { Paper, colour } from "./paper.js";
 
 const NICE = [1, 1.2, 1.6, 2, 3, 4, 6, 8];
-const MARGIN = { left: 34, right: 6, top: 6, bottom: 6 };
+/** Room for the numbers of the scale. */
+const SCALE = 34;
 
 /** The nice number at or above a value, whose half is nice too. */
 function nice(value) {
@@ -17,38 +19,24 @@ export class Chart {
    * scale shows at any rate; `signed` puts zero in the middle, `bars` draws from zero upwards.
    */
   constructor(canvas, lines, { least, most = Infinity, signed = false, bars = false }) {
-    Object.assign(this, { canvas, lines, least, most, signed, bars });
-    this.pen = canvas.getContext("2d");
+    Object.assign(this, { lines, least, most, signed, bars });
+    this.paper = new Paper(canvas, SCALE);
     this.restyle();
   }
 
-  /** Colours are looked up when the theme changes, not with every picture. */
   restyle() {
-    const style = getComputedStyle(document.documentElement);
-    const colour = (name) => style.getPropertyValue(name).trim();
+    this.paper.restyle();
     this.colours = this.lines.map((line) => colour(line.colour));
-    this.grid = colour("--rule");
-    this.ink = colour("--faint");
-    this.face = `10px ${colour("--text-face")}`;
   }
 
   draw(history) {
-    const { canvas, pen } = this;
-    const scale = Math.min(window.devicePixelRatio || 1, 2);
-    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-    if (width === 0 || height === 0) return;
-    const [across, down] = [Math.round(width * scale), Math.round(height * scale)];
-    if (canvas.width !== across) canvas.width = across;
-    if (canvas.height !== down) canvas.height = down;
-    pen.setTransform(scale, 0, 0, scale, 0, 0);
-    pen.clearRect(0, 0, width, height);
+    const { paper } = this;
+    if (!paper.begin()) return;
     const top = this.range();
-    this.left = MARGIN.left;
-    this.span = width - MARGIN.left - MARGIN.right;
-    this.base = height - MARGIN.bottom;
-    this.unit = (this.base - MARGIN.top) / (this.signed ? 2 * top : top);
-    this.zero = this.signed ? (this.base + MARGIN.top) / 2 : this.base;
-    this.drawGrid(top);
+    this.unit = (paper.base - paper.top) / (this.signed ? 2 * top : top);
+    this.zero = this.signed ? (paper.base + paper.top) / 2 : paper.base;
+    const values = this.signed ? [-top, 0, top] : [0, top / 2, top];
+    paper.ruled(values.map((value) => [this.zero - value * this.unit, label(value)]));
     for (let i = 0; i < this.lines.length; i += 1) this.drawLine(history, this.lines[i].track, this.colours[i]);
   }
 
@@ -69,34 +57,10 @@ export class Chart {
     return Math.min(this.most, nice(Math.max(1.05 * largest, this.least)));
   }
 
-  drawGrid(top) {
-    const { pen } = this;
-    pen.strokeStyle = this.grid;
-    pen.fillStyle = this.ink;
-    pen.font = this.face;
-    pen.textAlign = "right";
-    pen.textBaseline = "middle";
-    pen.lineWidth = 1;
-    pen.beginPath();
-    const values = this.signed ? [-top, 0, top] : [0, top / 2, top];
-    for (const value of values) {
-      const y = Math.round(this.zero - value * this.unit) + 0.5;
-      pen.moveTo(this.left, y);
-      pen.lineTo(this.left + this.span, y);
-      pen.fillText(label(value), this.left - 5, y);
-    }
-    // A second each.
-    const second = (this.span * 1) / (COLUMN * COLUMNS);
-    for (let x = this.left + this.span; x >= this.left - 1; x -= second) {
-      pen.moveTo(Math.round(x) + 0.5, MARGIN.top);
-      pen.lineTo(Math.round(x) + 0.5, this.base);
-    }
-    pen.stroke();
-  }
-
   drawLine(history, { least, most }, colour) {
-    const { pen } = this;
-    const step = this.span / (COLUMNS - 1);
+    const { paper } = this;
+    const { pen } = paper;
+    const step = paper.place(1) - paper.place(0);
     pen.strokeStyle = colour;
     pen.lineWidth = this.bars ? Math.max(step, 1.5) : 1.4;
     pen.lineJoin = "round";
@@ -109,7 +73,7 @@ export class Chart {
       if (history.broken[at]) down = false;
       const [low, high] = [least[at], most[at]];
       if (!(low <= high)) continue;
-      const x = this.left + i * step;
+      const x = paper.place(i);
       if (this.bars) {
         if (high <= 0) continue;
         pen.moveTo(x, this.zero);

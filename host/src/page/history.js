@@ -2,7 +2,7 @@
 // greatest value of its fiftieth of a second. So a chart costs the same at any rate, and forgets.
 
 import { angles } from "./view.js";
-import { DEVICE_TIME, RESTART } from "./samples.js";
+import { CLIPPED, DEVICE_TIME, RESTART } from "./samples.js";
 
 /** How long a column is, in seconds. */
 export const COLUMN = 1 / 50;
@@ -50,6 +50,8 @@ export class History {
     this.tracks = [this.yaw, this.pitch, this.roll, this.rate, this.latency, this.missing];
     /** Set where a line must not be drawn through to the column before. */
     this.broken = new Uint8Array(COLUMNS).fill(1);
+    /** Those of the latest sample of a column; clipped is one of which any sample was. */
+    this.flags = new Uint16Array(COLUMNS);
     /** Seconds on the paper, and the column they are in. */
     this.time = 0;
     this.column = 0;
@@ -71,6 +73,8 @@ export class History {
     this.pitch.take(column, this.angles[1]);
     this.roll.take(column, this.angles[2]);
     if (latency >= 0) this.latency.take(column, latency);
+    const at = column % COLUMNS;
+    this.flags[at] = flags | (this.flags[at] & CLIPPED);
     this.count(column);
     this.follow(column, sequence, flags);
   }
@@ -86,6 +90,7 @@ export class History {
     for (let next = Math.max(this.column + 1, column - COLUMNS + 1); next <= column; next += 1) {
       for (let track = 0; track < this.tracks.length; track += 1) this.tracks[track].clear(next);
       this.broken[next % COLUMNS] = 0;
+      this.flags[next % COLUMNS] = 0;
     }
     this.column = column;
     if (jumped) {

@@ -1,7 +1,7 @@
 // The page of `vrduino view`: a source of samples on one side, pictures and words on the other.
 //
 //   stream.js (the program) ─┐                ┌─ picture.js (board, two eyes)
-//                            ├─ intake ─ ─ ─ ─┼─ charts.js over history.js
+//                            ├─ intake ─ ─ ─ ─┼─ charts.js, lanes.js over history.js
 //   serial.js over wire.js  ─┘  samples.js    └─ status.js, console.js, controls.js
 //
 // Samples are taken in as they come, into arrays that never grow; all else waits for the next
@@ -16,6 +16,7 @@ import { Orbit } from "./orbit.js";
 import { Hand, isInHand } from "./hand.js";
 import { Labels } from "./labels.js";
 import { Chart } from "./charts.js";
+import { Lanes } from "./lanes.js";
 import { Words } from "./status.js";
 import { Notice } from "./notice.js";
 import { Console } from "./console.js";
@@ -123,6 +124,7 @@ const charts = [
   new Chart(byId("chart-rate"), [{ track: history.rate, colour: "--accent" }], { least: 10 }),
   new Chart(byId("chart-latency"), [{ track: history.latency, colour: "--violet" }], { least: 1 }),
   new Chart(byId("chart-losses"), [{ track: history.missing, colour: "--bad" }], { least: 4, bars: true }),
+  new Lanes(byId("chart-status")),
 ];
 
 const theme = new Theme((dark) => {

@@ -81,6 +81,15 @@ pub fn turns(chromium: &Chromium) -> Result<(), Failed> {
     tab.close()
 }
 
+/// How many colours there are along the middle of this lane of four, to the right of the names.
+const COLOURS: &str = "(canvas, lane) => {
+    const { width, height } = canvas, y = Math.round((lane + 0.5) * height / 4);
+    const row = canvas.getContext('2d').getImageData(width * 0.4, y, width * 0.6 - 16, 1).data;
+    const found = new Set();
+    for (let i = 0; i < row.length; i += 4) if (row[i + 3] === 255) found.add(row.slice(i, i + 3).join());
+    return found.size;
+}";
+
 pub fn by_hand(chromium: &Chromium) -> Result<(), Failed> {
     let program = Server::view(&["--emulate", "--motion", "hand"]);
     let mut tab = chromium.open(&program.url())?;
@@ -97,6 +106,11 @@ pub fn by_hand(chromium: &Chromium) -> Result<(), Failed> {
     tab.until("so has the board", angles, 10)?;
     let off = "parseFloat(document.getElementById('truth').textContent) < 2";
     tab.until("as far", off, 10)?;
+    // That it was at rest and then was not stands in the second of four lanes, and the sensor was never clipped.
+    for (lane, colours) in [(1, 2), (3, 1)] {
+        let shown = format!("({COLOURS})(document.getElementById('chart-status'), {lane})");
+        tab.until("its status is drawn", &format!("{shown} === {colours}"), 10)?;
+    }
     tab.close()
 }
 
