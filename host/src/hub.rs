@@ -341,7 +341,13 @@ impl Worker {
     fn tell_status(&mut self) {
         self.told = Instant::now();
         let (at, heard) = self.latest;
-        self.status.report = self.stream.report(at + heard.elapsed().as_secs_f64());
+        // The clock of what is emulated or replayed stands still while nothing comes of it.
+        let is_its_own = self.status.kind != Some(source::Kind::Port);
+        let since = match self.status.state {
+            State::Connected if is_its_own => Duration::ZERO,
+            _ => heard.elapsed(),
+        };
+        self.status.report = self.stream.report(at + since.as_secs_f64());
         let status = Arc::new(self.status.clone());
         *lock(&self.shared.status) = Arc::clone(&status);
         self.tell(&Update::Status(status));

@@ -11,6 +11,8 @@
 
 pub mod failure;
 
+pub mod patience;
+
 pub mod output;
 
 pub mod source;

@@ -138,7 +138,12 @@ mod in_a_terminal {
     impl Seat {
         fn take() -> Self {
             let Pty { device, path } = Pty::open();
-            let terminal = open(path, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).expect("opens");
+            let terminal = open(
+                path,
+                OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC,
+                Mode::empty(),
+            )
+            .expect("opens");
             let end = || terminal.try_clone().expect("one more");
             let child = command()
                 .args(["calibrate", "--emulate", "--unpaced", "--motion", "still"])

@@ -130,12 +130,14 @@ fn noise_on_the_cable_is_counted_and_judged() {
 
 #[test]
 fn a_board_that_goes_is_waited_for() {
+    let port = pty::Port::new();
     let board = pty::PluggedIn::new(Vec::new);
-    let program = Program::start(&["monitor", "--port", &board.path]);
+    port.plug(&board);
+    let program = Program::start(&["monitor", "--port", port.path()]);
     program.until("the bias is measured", |line| {
         line.contains("bias measured")
     });
-    drop(board);
+    port.pull(board);
     let line = program.until("it is gone", |line| line.starts_with("lost: "));
     assert!(line.contains("plug the board in again"), "{line}");
     program.interrupt();

@@ -38,7 +38,7 @@ attach() {
 read_lines() {
     count=$1
     shift
-    timeout 20 sh -c "stty raw -echo $* <&0; head -n $count" <$tty
+    timeout 120 sh -c "stty raw -echo $* <&0; head -n $count" <$tty
 }
 
 while read -r module; do insmod "/modules/$module"; done </modules/order
@@ -73,7 +73,7 @@ wait
 
 all=0
 for n in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
-    timeout 5 head -c $((n * 37)) <$tty >/tmp/stream || all=1
+    timeout 60 head -c $((n * 37)) <$tty >/tmp/stream || all=1
 done
 read_lines 20 >/tmp/stream || all=1
 check "the port opens and closes under traffic" $all

@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use vrduino_emulator::board::Board;
 use vrduino_emulator::gdb::Server;
@@ -173,10 +173,21 @@ fn breakpoints_watchpoints_steps_and_ctrl_c_stop_the_program() {
 #[test]
 fn registers_and_memory_can_be_changed_and_looking_changes_nothing() {
     let mut bench = Bench::new();
-    bench.send("c");
-    thread::sleep(Duration::from_millis(500));
-    bench.debugger.write_all(&[3]).unwrap();
-    assert_eq!(bench.reply(), "S02");
+    let began = Instant::now();
+    // Until I2C and USB have their clocks.
+    loop {
+        bench.send("c");
+        thread::sleep(Duration::from_millis(100));
+        bench.debugger.write_all(&[3]).unwrap();
+        assert_eq!(bench.reply(), "S02");
+        if ["m40066000,c", "m40072000,10"]
+            .iter()
+            .all(|read| !bench.ask(read).starts_with('E'))
+        {
+            break;
+        }
+        assert!(began.elapsed() < Duration::from_secs(120));
+    }
     let before = bench.monitor("hash");
     // The identification of the processor, the clock's status, all of I2C0 with its data register, USB, SysTick.
     assert_eq!(bench.ask("me000ed00,4"), "41c20f41");

@@ -85,6 +85,8 @@ struct Watch {
     /// Whether the time is counted before it is there.
     counts_waiting: bool,
     began: Instant,
+    /// Whether the source has said how it is, and whether it has been there.
+    has_spoken: bool,
     seen: bool,
     told: Instant,
     state: State,
@@ -100,6 +102,7 @@ impl Watch {
             seconds: arguments.seconds.map(Duration::from_secs_f64),
             counts_waiting: choice.kind() != Kind::Emulated,
             began: Instant::now(),
+            has_spoken: false,
             seen: false,
             told: Instant::now(),
             state: State::Waiting,
@@ -136,7 +139,7 @@ impl Watch {
     }
 
     fn is_over(&self) -> bool {
-        let runs = self.seen || self.counts_waiting;
+        let runs = self.seen || self.counts_waiting && self.has_spoken;
         runs && self
             .seconds
             .is_some_and(|seconds| self.began.elapsed() >= seconds)
@@ -144,6 +147,7 @@ impl Watch {
 
     /// Says what has changed.
     fn notice(&mut self, status: &Status) -> Result<(), Closed> {
+        self.has_spoken |= status.trouble.is_some() || status.state != State::Waiting;
         if status.trouble != self.trouble {
             self.trouble.clone_from(&status.trouble);
             // What ends it is said at the end.

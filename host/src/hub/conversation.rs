@@ -7,10 +7,11 @@ pub mod answer;
 
 use std::collections::VecDeque;
 use std::sync::mpsc::Sender;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use vrduino::command::request::Setting;
 
+use crate::patience::Patience;
 use crate::source::Order;
 
 /// How long an answer may take; the board's start-up takes a second.
@@ -74,7 +75,7 @@ pub struct Conversation {
     stream: Option<&'static str>,
     board: Acquaintance,
     waiting: VecDeque<Question>,
-    asked: Option<(Question, Instant)>,
+    asked: Option<(Question, Patience)>,
     orders: Vec<Order>,
     /// One that does not, as a recording, answers nothing but `ERR`: its `OK` was said to another.
     listens: bool,
@@ -137,8 +138,8 @@ impl Conversation {
         };
         if self
             .asked
-            .as_ref()
-            .is_some_and(|(_, when)| when.elapsed() > patience)
+            .as_mut()
+            .is_some_and(|(_, unanswered)| unanswered.look() > patience)
         {
             // Its reply goes with it: who waits is told that nothing came.
             self.asked = None;
@@ -167,7 +168,7 @@ impl Conversation {
         // What half a line there may be ends here.
         let line = format!("\n{}\n", question.line);
         self.orders.push(Order::Send(line.into_bytes()));
-        self.asked = Some((question, Instant::now()));
+        self.asked = Some((question, Patience::new()));
     }
 
     /// Whether a board is there that does not answer: its program is another.

@@ -14,14 +14,22 @@ export class Hand {
     this.ask = ask;
     this.target = [1, 0, 0, 0];
     this.movedAt = -Infinity;
+    this.begins = false;
     this.waiting = false;
+  }
+
+  /** A finger or the mouse is put down. */
+  begin() {
+    this.begins = performance.now() - this.movedAt > ARRIVES;
   }
 
   /** By so many pixels, as seen by a camera whose right is this axis; it is asked for with the next picture. */
   drag(across, down, right, truth) {
-    const now = performance.now();
-    if (now - this.movedAt > ARRIVES && truth) this.target = [...truth.q];
-    this.movedAt = now;
+    if (this.begins && truth) {
+      this.target = [...truth.q];
+      this.begins = false;
+    }
+    this.movedAt = performance.now();
     this.target = product(about([0, 1, 0], SPEED * across), product(about(right, SPEED * down), this.target));
     this.waiting = true;
   }

@@ -102,7 +102,7 @@ const terminal = new Console(byId("lines"), byId("type"), send);
 const picture = new Picture(byId("picture"));
 picture.restored = redraw;
 const hand = new Hand((request) => source.ask(request));
-const orbit = new Orbit(picture.canvas, redraw, (across, down, event) => {
+const orbit = new Orbit(picture.canvas, redraw, () => hand.begin(), (across, down, event) => {
   const inHand = isInHand(shown.status);
   const stereo = picture.mode === "stereo";
   // The camera of the board view goes round with shift; that of the eyes is the head itself.

@@ -9,10 +9,10 @@ const SPEED = 0.008;
 
 export class Orbit {
   /**
-   * `changed` is called when the picture must be drawn again, `taken(across, down, event)` with
-   * every drag: whether it was meant for something else.
+   * `changed` is called when the picture must be drawn again, `begun` where a drag begins, and
+   * `taken(across, down, event)` with every step of it: whether it was meant for something else.
    */
-  constructor(canvas, changed, taken) {
+  constructor(canvas, changed, begun, taken) {
     this.changed = changed;
     this.taken = taken;
     this.fingers = new Map();
@@ -21,6 +21,7 @@ export class Orbit {
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
+      begun();
     });
     canvas.addEventListener("pointermove", (event) => this.drag(event));
     for (const over of ["pointerup", "pointercancel"]) {

@@ -3,7 +3,7 @@
 use libtest_mimic::Failed;
 
 use super::chromium::Chromium;
-use super::moving::START;
+use super::moving::{START, turned_by_hand};
 use super::server::Server;
 
 /// Bit of a sample's flags: the notes' estimator made it.
@@ -97,16 +97,7 @@ pub fn reach_the_board(chromium: &Chromium) -> Result<(), Failed> {
 
 pub fn recenter(chromium: &Chromium) -> Result<(), Failed> {
     // By hand, for it stays where it was turned to, however long the click takes.
-    let program = Server::view(&["--emulate", "--motion", "hand"]);
-    let mut tab = chromium.open(&program.url())?;
-    tab.until(
-        "samples arrive",
-        "vrduino.count > 1000 && vrduino.truth",
-        START,
-    )?;
-    tab.drag([400.0, 300.0], [500.0, 300.0])?;
-    let turned = "2 * Math.atan2(vrduino.truth.q[2], vrduino.truth.q[0]) > 0.79";
-    tab.until("the sensor has turned", turned, 20)?;
+    let (_program, mut tab) = turned_by_hand(chromium, 0.0)?;
     tab.until("so has the board", "vrduino.angles[0] > 45", 10)?;
     let yaw = tab.numbers("[vrduino.angles[0]]")?[0];
     tab.click("button[data-act=recenter]")?;

@@ -8,6 +8,7 @@ use vrduino::view::gl_rotate::gl_rotate;
 
 use super::chromium::Chromium;
 use super::server::Server;
+use super::tab::Tab;
 
 /// The image may have to be built first.
 pub const START: u64 = 300;
@@ -90,7 +91,9 @@ const COLOURS: &str = "(canvas, lane) => {
     return found.size;
 }";
 
-pub fn by_hand(chromium: &Chromium) -> Result<(), Failed> {
+/// The page of a board that was taken into the hand and turned to the left, by `down` pixels upwards too,
+/// and stays there.
+pub fn turned_by_hand(chromium: &Chromium, down: f64) -> Result<(Server, Tab), Failed> {
     let program = Server::view(&["--emulate", "--motion", "hand"]);
     let mut tab = chromium.open(&program.url())?;
     tab.until(
@@ -99,9 +102,14 @@ pub fn by_hand(chromium: &Chromium) -> Result<(), Failed> {
         START,
     )?;
     // To the right and down: to the left and upwards is what the board then faces.
-    tab.drag([400.0, 300.0], [500.0, 340.0])?;
+    tab.drag([400.0, 300.0], [500.0, 300.0 + down])?;
     let turned = "2 * Math.atan2(vrduino.truth.q[2], vrduino.truth.q[0]) > 0.7";
     tab.until("the sensor has turned", turned, 20)?;
+    Ok((program, tab))
+}
+
+pub fn by_hand(chromium: &Chromium) -> Result<(), Failed> {
+    let (_program, mut tab) = turned_by_hand(chromium, 40.0)?;
     let angles = "vrduino.angles[0] > 40 && vrduino.angles[1] > 10";
     tab.until("so has the board", angles, 10)?;
     let off = "parseFloat(document.getElementById('truth').textContent) < 2";

@@ -79,6 +79,7 @@ const MOCK: &str = "(() => {
     };
     mock.plug = (stream) => {
         mock.plugged = true;
+        mock.at = 0;
         mock.stream = stream;
         listeners.connect({ target: port });
     };

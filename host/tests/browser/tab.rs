@@ -172,8 +172,9 @@ impl Tab {
         Ok(serde_json::from_value(self.eval(expression)?)?)
     }
 
-    /// Waits until an expression is true.
+    /// Waits until an expression is true: for so many seconds, and on a busy machine for a minute.
     pub fn until(&mut self, what: &str, expression: &str, seconds: u64) -> Result<(), Failed> {
+        let seconds = seconds.max(60);
         let began = Instant::now();
         // A page that is being loaded has nothing yet.
         let guarded = format!(

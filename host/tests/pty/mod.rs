@@ -5,10 +5,12 @@
 
 mod terminal;
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{Read, Write};
+use std::os::unix::fs::symlink;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -93,6 +95,40 @@ impl PluggedIn {
             wanted,
             thread: Some(thread),
         }
+    }
+}
+
+/// A name under which boards are plugged in and pulled out. That of a pseudo-terminal goes to whoever opens the next one.
+pub struct Port(PathBuf);
+
+impl Port {
+    /// With nothing in it.
+    pub fn new() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let (program, count) = (std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        Self(folder.join(format!("port-{program}-{count}")))
+    }
+
+    pub fn path(&self) -> &str {
+        self.0.to_str().expect("plain letters")
+    }
+
+    /// A board is plugged in.
+    pub fn plug(&self, board: &PluggedIn) {
+        symlink(&board.path, &self.0).expect("a link");
+    }
+
+    /// And is pulled out again.
+    pub fn pull(&self, board: PluggedIn) {
+        fs::remove_file(&self.0).expect("a link");
+        drop(board);
+    }
+}
+
+impl Drop for Port {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.0);
     }
 }
 

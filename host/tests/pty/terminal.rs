@@ -18,7 +18,10 @@ pub struct Terminal {
 impl Terminal {
     /// A new one. A program that is started meanwhile does not hold it open.
     pub fn open() -> Self {
-        let person = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a pseudo-terminal");
+        let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
+        #[cfg(target_os = "linux")]
+        let flags = flags | OpenptFlags::CLOEXEC;
+        let person = openpt(flags).expect("a pseudo-terminal");
         fcntl_setfd(&person, FdFlags::CLOEXEC).expect("not inherited");
         grantpt(&person).expect("granted");
         unlockpt(&person).expect("unlocked");

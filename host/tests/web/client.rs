@@ -142,9 +142,12 @@ impl Stream {
 
     /// Sends this text.
     pub fn say(&mut self, text: &str) {
-        self.0
-            .send(Message::Text(text.into()))
-            .expect("it goes out");
+        self.try_say(text).expect("it goes out");
+    }
+
+    /// The same to one who may not listen.
+    pub fn try_say(&mut self, text: &str) -> Result<(), tungstenite::Error> {
+        self.0.send(Message::Text(text.into()))
     }
 
     /// Whether it ends with a good-bye, whatever comes before.

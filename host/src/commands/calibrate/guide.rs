@@ -1,6 +1,6 @@
 //! Leads through the three parts.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::procedure::Procedure;
 use super::progress::{Part, Progress};
@@ -9,10 +9,15 @@ use crate::failure::{Failure, Kind};
 use crate::hub::{State, Update};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
+use crate::patience::Patience;
+use crate::source;
 use crate::stream::Item;
 
 /// How long counts are waited for.
 const SILENCE: Duration = Duration::from_secs(3);
+
+/// The same of an emulated board, which may be slower than a real one.
+const EMULATED_SILENCE: Duration = Duration::from_secs(60);
 
 /// Leads through it.
 pub struct Guide<'a> {
@@ -59,7 +64,11 @@ impl<'a> Guide<'a> {
         progress: &mut Progress,
         output: &mut Output,
     ) -> Result<bool, Failure> {
-        let mut heard = Instant::now();
+        let silence = match self.board.hub.status().kind {
+            Some(source::Kind::Emulated) => EMULATED_SILENCE,
+            _ => SILENCE,
+        };
+        let mut unheard = Patience::new();
         loop {
             if self.interrupt.has_come() || output.is_closed() {
                 return Ok(false);
@@ -70,7 +79,7 @@ impl<'a> Guide<'a> {
                         match item {
                             Item::Sample(sample) => progress.pass(sample.time, sample.is_first),
                             Item::Registers(registers) => {
-                                heard = Instant::now();
+                                unheard.renew();
                                 progress.take(&registers.counts, procedure, output);
                             }
                             Item::Line(line) if line.starts_with("error") => {
@@ -100,7 +109,7 @@ impl<'a> Guide<'a> {
                 Some(Update::Ended(Err(failure))) => return Err(failure),
                 Some(Update::Ended(Ok(()))) | None => {}
             }
-            if heard.elapsed() > SILENCE {
+            if unheard.look() > silence {
                 return Err(Failure::new(
                     Kind::Stream,
                     "the board sends no counts: its sensor may have stopped (`vrduino doctor` looks closer)",

@@ -8,6 +8,7 @@ use vrduino::imu::RANGES;
 use vrduino::wire::decoder::{Decoder, Event};
 
 use crate::hub::{Hub, Status, Subscription, Update};
+use crate::patience::Patience;
 use crate::stream::{Item, Sample};
 
 /// For who it is: a board that says nothing is asked five times, and its start takes a second.
@@ -16,8 +17,9 @@ const INTRODUCTION: Duration = Duration::from_secs(8);
 /// For what it streams, on the board's clock (s): drift is taken over three of them.
 const STREAM: f64 = 3.5;
 
-/// The same in seconds of this computer, where nothing comes, or slowly.
-const LIMIT: Duration = Duration::from_secs(12);
+/// In seconds of this computer: where nothing more comes, and where it comes slowly.
+const STANDSTILL: Duration = Duration::from_secs(6);
+const LIMIT: Duration = Duration::from_secs(90);
 
 /// Lines that are kept.
 const LINES: usize = 200;
@@ -67,8 +69,13 @@ pub fn watch(hub: &Hub, updates: &Subscription) -> Seen {
     }
     if watch.seen.status.version.is_some() {
         let began = Instant::now();
-        while began.elapsed() < LIMIT && watch.seconds() < STREAM {
+        let (mut standing, mut before) = (Patience::new(), 0.0);
+        while watch.seconds() < STREAM && began.elapsed() < LIMIT && standing.look() < STANDSTILL {
             watch.take(updates.next(Duration::from_millis(50)), true);
+            if watch.seconds() != before {
+                before = watch.seconds();
+                standing.renew();
+            }
         }
         watch.seen.status = hub.status();
     }

@@ -65,7 +65,12 @@ fn convert(image: &Image, elf: &Path, is_ours: bool) -> Result<PathBuf, Failure>
     };
     let name = Path::new(elf.file_stem().unwrap_or("vrduino".as_ref()));
     let hex = folder.join(name).with_added_extension("hex");
-    let written = fs::create_dir_all(&folder).and_then(|()| fs::write(&hex, image.to_hex()));
+    // Whoever reads it meanwhile, as another that flashes, finds all of one image.
+    let begun = hex.with_added_extension(std::process::id().to_string());
+    let written = fs::create_dir_all(&folder)
+        .and_then(|()| fs::write(&begun, image.to_hex()))
+        .and_then(|()| fs::rename(&begun, &hex))
+        .inspect_err(|_| drop(fs::remove_file(&begun)));
     written.map_err(|error| {
         let sentence = format!(
             "{} cannot be written: {error}; is the disk full?",

@@ -11,6 +11,7 @@ use super::tally::Tally;
 use crate::failure::{Failure, Kind};
 use crate::hub::{Hub, State, Status, Subscription, Update};
 use crate::interrupt::Interrupt;
+use crate::patience::Patience;
 use crate::recording::{Assembly, Entry, Head, Writer};
 use crate::source;
 
@@ -41,9 +42,10 @@ pub struct Session<'a> {
     progress: Progress,
     status: Status,
     began: Instant,
-    /// When the first sample that is recorded came, and the latest.
+    /// When the first sample that is recorded came.
     first: Option<Instant>,
-    latest: Instant,
+    /// Since the latest.
+    silence: Patience,
 }
 
 impl<'a> Session<'a> {
@@ -60,7 +62,7 @@ impl<'a> Session<'a> {
             status: Status::default(),
             began: Instant::now(),
             first: None,
-            latest: Instant::now(),
+            silence: Patience::new(),
         }
     }
 
@@ -202,8 +204,8 @@ impl<'a> Session<'a> {
                     continue;
                 }
                 self.tally.count(&row.sample);
-                self.latest = Instant::now();
-                self.first.get_or_insert(self.latest);
+                self.silence.renew();
+                self.first.get_or_insert_with(Instant::now);
             }
             self.writer.write(&entry)?;
         }
@@ -236,7 +238,7 @@ impl<'a> Session<'a> {
     }
 
     /// By the stream's clock, and by the one on the wall where the stream has stopped.
-    fn is_over(&self) -> Result<bool, Failure> {
+    fn is_over(&mut self) -> Result<bool, Failure> {
         let Some(seconds) = self.seconds else {
             return Ok(false);
         };
@@ -253,7 +255,7 @@ impl<'a> Session<'a> {
         };
         // The emulated board may take its time.
         let counts = self.status.kind != Some(source::Kind::Emulated);
-        let is_late = counts && self.latest.elapsed() > SILENCE && first.elapsed() > limit;
+        let is_late = counts && self.silence.look() > SILENCE && first.elapsed() > limit;
         Ok(self.is_enough() || is_late)
     }
 
@@ -261,6 +263,10 @@ impl<'a> Session<'a> {
     fn nothing(&self) -> Failure {
         match &self.status.trouble {
             Some(trouble) if self.status.state != State::Connected => trouble.clone(),
+            None if self.status.state != State::Connected => Failure::new(
+                Kind::Board,
+                "nothing is recorded: the board had not come. `vrduino list` shows what is plugged in",
+            ),
             _ => Failure::new(
                 Kind::Stream,
                 "nothing is recorded: no orientation has come. Is it the right port (`vrduino list`), and is vrduino on the board (`vrduino doctor`)?",
