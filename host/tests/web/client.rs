@@ -1,6 +1,6 @@
 //! A browser, as far as a server can tell.
 
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
@@ -110,10 +110,14 @@ pub fn open(
 impl Stream {
     /// The next message; none once it is over.
     pub fn message(&mut self) -> Option<Message> {
-        match self.0.read() {
-            Ok(message) => Some(message),
-            Err(Error::ConnectionClosed) => None,
-            Err(error) => panic!("the stream breaks: {error}"),
+        loop {
+            match self.0.read() {
+                Ok(message) => return Some(message),
+                Err(Error::ConnectionClosed) => return None,
+                // By a pause of this program.
+                Err(Error::Io(error)) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => panic!("the stream breaks: {error}"),
+            }
         }
     }
 
