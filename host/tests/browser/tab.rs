@@ -1,5 +1,6 @@
 //! One page in the browser: what a person does there, what they see, and what goes wrong meanwhile.
 
+use std::io::ErrorKind;
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -8,7 +9,7 @@ use std::time::{Duration, Instant};
 use data_encoding::BASE64;
 use libtest_mimic::Failed;
 use serde_json::{Value, json};
-use tungstenite::{Message, WebSocket};
+use tungstenite::{Error, Message, WebSocket};
 
 /// Between two looks at the page.
 const LOOK: Duration = Duration::from_millis(100);
@@ -115,8 +116,12 @@ impl Tab {
         let request = json!({"id": id, "method": method, "params": params});
         self.socket.send(Message::text(request.to_string()))?;
         loop {
-            let Message::Text(text) = self.socket.read()? else {
-                continue;
+            let text = match self.socket.read() {
+                Ok(Message::Text(text)) => text,
+                Ok(_) => continue,
+                // By a pause of this program.
+                Err(Error::Io(error)) if error.kind() == ErrorKind::Interrupted => continue,
+                Err(error) => return Err(error.into()),
             };
             let mut message: Value = serde_json::from_str(&text)?;
             if message["id"] == id {
