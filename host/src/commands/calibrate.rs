@@ -92,8 +92,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     let refused = report::tell(&procedure, &mut output);
-    if procedure.has_magnetometer() {
-        draw(&procedure, arguments, &mut output)?;
+    if procedure.has_magnetometer()
+        && let Err(failure) = draw(&procedure, arguments, &mut output)
+    {
+        // What was found is worth more than its picture.
+        output.say(format!("\nno picture: {failure}"));
     }
     let record = procedure.record();
     if record != Record::default() {
@@ -152,7 +155,10 @@ fn settle(
 ) -> Result<bool, Failure> {
     if let Some(path) = &arguments.dry_run {
         let lines: String = record.lines().map(|line| format!("{line}\n")).collect();
-        fs::write(path, lines).map_err(|error| unwritten(path, &error))?;
+        if let Err(error) = fs::write(path, &lines) {
+            output.say(format!("\nthe lines that hand this to a board:\n{lines}"));
+            return Err(unwritten(path, &error));
+        }
         output.say(format!(
             "nothing sent; {} has the lines that hand this to a board",
             path.display()

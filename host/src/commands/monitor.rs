@@ -63,8 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let interrupt = Interrupt::listen();
     let choice = arguments.source.choice();
     let mut watch = Watch::new(arguments, &choice);
-    let hub = Hub::start(choice, Some("binary"));
-    let updates = hub.subscribe(Hold::Newest(4096));
+    let (hub, updates) = Hub::open(choice, Some("binary"), Hold::Newest(4096));
     match watch.until_the_end(&hub, &updates, &interrupt) {
         Ok(ended) => {
             let status = hub.status_now();

@@ -61,6 +61,9 @@ pub struct Arguments {
 /// There is nothing to record, or the file cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let target = Target::of(arguments.file.as_deref(), arguments.format, arguments.force)?;
+    if let Some(replayed) = &arguments.source.replay {
+        target.is_not(replayed)?;
+    }
     let interrupt = Interrupt::listen();
     let mut writer = Writer::create(target.written(), arguments.force)?;
     let stream = if arguments.counts { "counts" } else { "binary" };

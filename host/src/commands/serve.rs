@@ -29,6 +29,9 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Bytes that wait for a board that is not there yet, at most.
 const TYPED: usize = 4096;
 
+/// At which the course's pages look.
+pub const SERVE_PORT: u16 = 8081;
+
 /// What is asked for.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = NOTES)]
@@ -37,7 +40,7 @@ pub struct Arguments {
     #[command(flatten)]
     pub source: SourceArguments,
     /// The port on this computer, 0 for any that is free; the course's pages look at 8081
-    #[arg(long, value_name = "N", default_value_t = 8081)]
+    #[arg(long, value_name = "N", default_value_t = SERVE_PORT)]
     pub ws_port: u16,
     /// Does not print the board's lines; `d` begins to
     #[arg(long)]

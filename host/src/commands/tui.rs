@@ -1,5 +1,6 @@
 //! `vrduino tui`: the board in a terminal.
 
+use std::env;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 
@@ -43,7 +44,7 @@ pub struct Arguments {
 ///
 /// There is no terminal to draw in.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if !(io::stdout().is_terminal() && io::stdin().is_terminal()) {
+    if !(io::stdout().is_terminal() && io::stdin().is_terminal() && can_draw()) {
         return Err(Failure::new(
             Kind::Computer,
             "tui draws in a terminal and takes its keys from there, and this is none: `vrduino monitor` prints lines wherever it is",
@@ -55,6 +56,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // Given back before the hub has ended, which may take the source a while.
     let mut screen = Screen::open()?;
     show(&mut screen.0, &hub, &updates, &interrupt).map_err(|error| lost(&error))
+}
+
+/// One that only prints says so, where a terminal says what it is.
+fn can_draw() -> bool {
+    let name = env::var("TERM").unwrap_or_default();
+    cfg!(windows) || !matches!(name.as_str(), "" | "dumb")
 }
 
 /// The terminal, which is given back as it was, however this ends; a panic gives it back by ratatui's hook.

@@ -14,6 +14,7 @@ use clap::Args;
 use tungstenite::http::{Method, StatusCode};
 
 use crate::arguments::SourceArguments;
+use crate::commands::serve::SERVE_PORT;
 use crate::failure::{Failure, Kind};
 use crate::hub::{Hub, Status};
 use crate::interrupt::Interrupt;
@@ -111,11 +112,12 @@ fn bind(port: Option<u16>) -> Result<Server, Failure> {
         Some(port) => format!("port {port} of this computer"),
         None => format!(
             "none of the ports {HTTP_PORT} to {} of this computer",
-            tried.end()
+            HTTP_PORT + HTTP_PORTS - 1
         ),
     };
     let mut error = io::Error::from(ErrorKind::AddrInUse);
-    for port in tried {
+    // That of `serve` is left to it, unless it is asked for.
+    for port in tried.filter(|&next| port.is_some() || next != SERVE_PORT) {
         match Server::bind(port) {
             Ok(server) => return Ok(server),
             Err(why) => error = why,

@@ -89,7 +89,7 @@ export class History {
     const column = Math.floor(this.time / COLUMN);
     for (let next = Math.max(this.column + 1, column - COLUMNS + 1); next <= column; next += 1) {
       for (let track = 0; track < this.tracks.length; track += 1) this.tracks[track].clear(next);
-      this.broken[next % COLUMNS] = 0;
+      this.broken[next % COLUMNS] = Number(jumped);
       this.flags[next % COLUMNS] = 0;
     }
     this.column = column;

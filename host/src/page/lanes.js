@@ -6,18 +6,18 @@ import * as flag from "./samples.js";
 
 /** Room for the names. */
 const NAMES = 58;
-/** How thick a bar is, in pixels. */
-const THICK = 7;
+/** How thick a bar is in pixels, and one that says no. */
+const [THICK, THIN] = [7, 1.5];
 
-const [NOTHING, PLAIN, GOOD, WARN, BAD] = ["--rule", "--faint", "--good", "--warn", "--bad"];
-const COMPASS = [NOTHING, PLAIN, GOOD, WARN];
+const [NO, GOOD, WARN, BAD] = ["--faint", "--good", "--warn", "--bad"];
+const COMPASS = [NO, NO, GOOD, WARN];
 
 /** From top to bottom: the name, and the colour of these flags. */
 const LANES = [
   ["bias", (flags) => (flags & flag.BIAS_MEASURED ? GOOD : WARN)],
-  ["at rest", (flags) => (flags & flag.STILL ? GOOD : NOTHING)],
+  ["at rest", (flags) => (flags & flag.STILL ? GOOD : NO)],
   ["compass", (flags) => COMPASS[(flags >> flag.COMPASS_SHIFT) & 3]],
-  ["clipped", (flags) => (flags & flag.CLIPPED ? BAD : NOTHING)],
+  ["clipped", (flags) => (flags & flag.CLIPPED ? BAD : NO)],
 ];
 
 export class Lanes {
@@ -28,7 +28,7 @@ export class Lanes {
 
   restyle() {
     this.paper.restyle();
-    this.colours = new Map([NOTHING, PLAIN, GOOD, WARN, BAD].map((name) => [name, colour(name)]));
+    this.colours = new Map([NO, GOOD, WARN, BAD].map((name) => [name, colour(name)]));
   }
 
   draw(history) {
@@ -37,14 +37,14 @@ export class Lanes {
     const height = (paper.base - paper.top) / LANES.length;
     const middle = (lane) => paper.top + (lane + 0.5) * height;
     paper.ruled(LANES.map(([name], lane) => [middle(lane), name]));
-    LANES.forEach(([, mood], lane) => this.drawLane(history, mood, Math.round(middle(lane) - THICK / 2)));
+    LANES.forEach(([, mood], lane) => this.drawLane(history, mood, Math.round(middle(lane))));
   }
 
   /** A bar for as long as it stays what it is. What no sample tells is as it was. */
-  drawLane(history, mood, top) {
+  drawLane(history, mood, y) {
     let [from, shown, flags] = [0, null, 0];
     const end = (to) => {
-      if (shown !== null) this.bar(from, to, top, shown);
+      if (shown !== null) this.bar(from, to, y, shown);
     };
     for (let i = 0; i < COLUMNS; i += 1) {
       const column = history.column - COLUMNS + 1 + i;
@@ -59,10 +59,11 @@ export class Lanes {
     end(COLUMNS - 1);
   }
 
-  bar(from, to, top, shown) {
+  bar(from, to, y, shown) {
     const { paper } = this;
+    const thick = shown === NO ? THIN : THICK;
     const [left, right] = [paper.place(from), paper.place(to)];
     paper.pen.fillStyle = this.colours.get(shown);
-    paper.pen.fillRect(left, top, Math.max(right - left, 1), THICK);
+    paper.pen.fillRect(left, y - thick / 2, Math.max(right - left, 1), thick);
   }
 }

@@ -145,15 +145,18 @@ function full() {
   else byId("stage").requestFullscreen?.().catch(() => {});
 }
 
+/** What is of the wearer is seen by two eyes only: unseen it is not changed. */
+const worn = (act) => () => picture.mode === "stereo" && act();
+
 const acts = {
   recenter: () => send("r"),
   bias: () => send("b"),
   view: () => show(picture.mode === "board" ? "stereo" : "board"),
   estimator: () => board.toggle(),
-  mounting: () => wearer.mounting(!picture.viewer.turnedAround),
-  neck: () => wearer.neck(!picture.neckOn),
-  narrower: () => wearer.ipd(picture.viewer.ipd - 1),
-  wider: () => wearer.ipd(picture.viewer.ipd + 1),
+  mounting: worn(() => wearer.mounting(!picture.viewer.turnedAround)),
+  neck: worn(() => wearer.neck(!picture.neckOn)),
+  narrower: worn(() => wearer.ipd(picture.viewer.ipd - 1)),
+  wider: worn(() => wearer.ipd(picture.viewer.ipd + 1)),
   orbit: () => orbit.reset(),
   theme: () => theme.toggle(),
   console() {

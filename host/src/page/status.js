@@ -54,9 +54,10 @@ export class Words {
     write("rate", flowing ? number(history.hertz, history.hertz < 20 ? 1 : 0) : "–");
     const late = status.latency_ms;
     write("latency", flowing && late ? `${number(late.p50, 2)} / ${number(late.p99, 2)}` : "–");
-    write("losses-now", number(history.lost, 0), history.lost > 0 ? "warn" : "");
+    const missing = Math.max(status.gaps ?? 0, history.lost);
+    write("losses-now", number(missing, 0), missing > 0 ? "warn" : "");
     this.flags(samples.latest.flags, flowing);
-    this.losses(status, history);
+    this.losses(status, missing);
     const shown = this.off && status.kind === "emulated";
     byId("truth-row").hidden = !shown;
     if (shown) {
@@ -88,10 +89,10 @@ export class Words {
     } else write("hint", board ? "drag to go round it · scroll to go nearer" : "");
   }
 
-  losses(status, history) {
+  losses(status, missing) {
     const parts = [];
     const add = (count, what) => count > 0 && parts.push(`${count} ${what}`);
-    add(Math.max(status.gaps ?? 0, history.lost), "missing");
+    add(missing, "missing");
     add(status.crc_errors, "with a wrong checksum");
     add(status.malformed, "malformed");
     add(status.thrown_away, "bytes thrown away");

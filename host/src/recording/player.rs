@@ -113,7 +113,11 @@ impl Player {
     pub fn farewell(&self) -> String {
         let ending = self.reader.ending();
         let seconds = ending.span.map_or(0.0, |(began, ended)| ended - began);
-        self.reader.warning().unwrap_or_else(|| {
+        let warning = self
+            .reader
+            .warning()
+            .map(|warning| format!("warning: {warning}"));
+        warning.unwrap_or_else(|| {
             let samples = ending.samples;
             format!("end of the recording: {samples} samples in {seconds:.1} s")
         })

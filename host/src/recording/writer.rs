@@ -20,6 +20,8 @@ const AT_MOST: usize = 64 * 1024;
 pub struct Writer {
     path: PathBuf,
     file: File,
+    /// There was none of this name before.
+    is_new: bool,
     /// Lines that are not on the disk yet, and the rows among them.
     pending: String,
     pending_rows: u64,
@@ -34,16 +36,17 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Opens the file: a new one, unless `force` says that what it holds may go.
+    /// Opens the file: a new one, unless `force` says that what it holds may go. That goes once something is written.
     ///
     /// # Errors
     ///
     /// There is one already, or it cannot be made.
     pub fn create(path: &Path, force: bool) -> Result<Self, Failure> {
-        let file = open(path, force)?;
+        let (file, is_new) = open(path, force)?;
         Ok(Self {
             path: path.to_owned(),
             file,
+            is_new,
             pending: String::new(),
             pending_rows: 0,
             bytes: 0,
@@ -63,6 +66,9 @@ impl Writer {
     /// As for [`Writer::write`].
     pub fn begin(&mut self, head: &Head) -> Result<(), Failure> {
         self.has_begun = true;
+        if self.is_on_a_disk() {
+            self.file.set_len(0).map_err(|error| self.refused(&error))?;
+        }
         self.has_counts = head.has_counts;
         write_head(head, &mut self.pending);
         self.flush()
@@ -136,7 +142,7 @@ impl Writer {
 
     /// There is nothing to record: no file is left behind, where one was made.
     pub fn abandon(self) {
-        if self.is_on_a_disk() && !self.has_begun {
+        if self.is_new && !self.has_begun {
             // An empty file that cannot be removed does no harm.
             let _ = fs::remove_file(&self.path);
         }
@@ -204,14 +210,14 @@ impl Writer {
     }
 }
 
-fn open(path: &Path, force: bool) -> Result<File, Failure> {
+fn open(path: &Path, force: bool) -> Result<(File, bool), Failure> {
     let refuse = |sentence| Failure::new(Kind::File, sentence);
     let shown = path.display();
     let mut options = OpenOptions::new();
     options.write(true);
     // What is there and no file, as /dev/stdout, cannot be lost.
     let is_there = fs::metadata(path).ok();
-    match is_there {
+    match &is_there {
         Some(metadata) if metadata.is_dir() => {
             return Err(refuse(format!("{shown} is a folder: name a file")));
         }
@@ -220,10 +226,10 @@ fn open(path: &Path, force: bool) -> Result<File, Failure> {
                 "{shown} is there already: choose another name, or --force to write over it"
             )));
         }
-        Some(_) => options.truncate(true),
+        Some(_) => &options,
         None => options.create_new(true),
     };
-    options.open(path).map_err(|error| {
+    let file = options.open(path).map_err(|error| {
         let sentence = match error.kind() {
             io::ErrorKind::NotFound => {
                 format!("{shown} cannot be made: there is no such folder")
@@ -234,5 +240,6 @@ fn open(path: &Path, force: bool) -> Result<File, Failure> {
             _ => format!("{shown} cannot be made: {error}"),
         };
         refuse(sentence)
-    })
+    })?;
+    Ok((file, is_there.is_none()))
 }

@@ -128,6 +128,28 @@ fn nothing_is_written_over_unasked() {
     assert!(samples(&entries(file.path())).len() > 200);
 }
 
+/// Even if it may go, it goes for a recording only, and never for its own.
+#[test]
+fn what_is_there_stays_where_nothing_takes_its_place() {
+    let file = Scratch::with("kept.csv", "precious");
+    for from in [["--replay", "no-such.csv"], ["--motion", "no-such.csv"]] {
+        let mut words = vec!["record", "--force", file.path()];
+        if from[0] == "--motion" {
+            words.push("--emulate");
+        }
+        words.extend(from);
+        vrduino(&words).expect(5).said("no-such.csv");
+        assert_eq!(fs::read_to_string(&file.0).expect("it"), "precious");
+    }
+    let own = Scratch::with("own.csv", fs::read(turns()).expect("it"));
+    let words = ["record", "--force", "--replay", own.path(), own.path()];
+    vrduino(&words).expect(5).said("is what is read");
+    assert_eq!(
+        fs::read(&own.0).expect("it"),
+        fs::read(turns()).expect("it")
+    );
+}
+
 #[test]
 fn what_cannot_be_made_is_not_begun() {
     let words = ["record", "--emulate", "no/such/folder/x.csv"];

@@ -245,3 +245,25 @@ fn monitor_reads_one_to_its_end() {
     ended.expect(0);
     assert!(!ended.out.is_empty(), "{}", ended.err);
 }
+
+#[test]
+fn whoever_reads_one_that_is_not_whole_is_told() {
+    let text = std::fs::read(turns()).expect("it");
+    let cut = Scratch::with("told-cut.csv", &text[..text.len() / 2]);
+    let again = Scratch::new("told-again.csv");
+    let monitored = vrduino(&["monitor", "--replay", cut.path(), "--speed", "100"]);
+    assert!(monitored.out.contains("is cut off"), "{monitored:?}");
+    assert!(
+        !monitored.out.contains("the stream is sound"),
+        "{monitored:?}"
+    );
+    let words = [
+        "record",
+        "--replay",
+        cut.path(),
+        "--speed",
+        "100",
+        again.path(),
+    ];
+    vrduino(&words).expect(0).said("is cut off");
+}

@@ -93,10 +93,7 @@ pub fn findings(status: &Status, tally: &Tally) -> Vec<String> {
     );
     find(
         tally.warnings() > 0,
-        format!(
-            "the board warned, times {}: see its lines above",
-            tally.warnings()
-        ),
+        format!("warnings, {}: see the lines above", tally.warnings()),
     );
     findings
 }

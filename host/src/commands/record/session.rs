@@ -14,6 +14,7 @@ use crate::interrupt::Interrupt;
 use crate::patience::Patience;
 use crate::recording::{Assembly, Entry, Head, Writer};
 use crate::source;
+use crate::stream::Item;
 
 /// A board that has sent so many seconds of samples without saying who it is does not know the question.
 const INTRODUCTION: f64 = 3.0;
@@ -97,6 +98,7 @@ impl<'a> Session<'a> {
         match update {
             Update::Stream(items) => {
                 for item in items.iter() {
+                    self.warn(item);
                     self.assembly.take(item, &mut self.entries);
                 }
                 self.forget_what_has_no_samples();
@@ -225,6 +227,16 @@ impl<'a> Session<'a> {
             self.note(&format!("{} is there again", status.source));
         }
         self.status = status.clone();
+    }
+
+    /// What is missing in a recording that is played is missing in this one.
+    fn warn(&mut self, item: &Item) {
+        if let Item::Line(line) = item
+            && self.status.kind == Some(source::Kind::Replay)
+            && line.starts_with("warning: ")
+        {
+            self.progress.say(line);
+        }
     }
 
     fn note(&mut self, sentence: &str) {

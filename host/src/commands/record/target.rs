@@ -66,6 +66,19 @@ impl Target {
         Ok(Self { path, meanwhile })
     }
 
+    /// What is read is not written over.
+    pub fn is_not(&self, read: &Path) -> Result<(), Failure> {
+        let same = |path: &Path| {
+            let written = path.canonicalize().ok();
+            written.is_some() && written == read.canonicalize().ok()
+        };
+        if same(&self.path) || same(self.written()) {
+            let sentence = format!("{} is what is read: name another file", read.display());
+            return Err(Failure::new(Kind::File, sentence));
+        }
+        Ok(())
+    }
+
     /// Where it is written while it is made.
     pub fn written(&self) -> &Path {
         self.meanwhile.as_ref().unwrap_or(&self.path)
