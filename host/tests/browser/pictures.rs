@@ -11,8 +11,8 @@ use super::moving::START;
 use super::server::Server;
 use super::tab::Size;
 
-/// Bytes of a picture: large enough to read, small enough to keep.
-const LARGEST: usize = 200_000;
+/// Bytes of a picture: large enough to read, small enough to keep. The moment makes a tenth of it.
+const LARGEST: usize = 300_000;
 
 pub fn for_the_readme(chromium: &Chromium) -> Result<(), Failed> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
