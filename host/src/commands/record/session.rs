@@ -275,7 +275,7 @@ impl<'a> Session<'a> {
     fn nothing(&self) -> Failure {
         match &self.status.trouble {
             Some(trouble) if self.status.state != State::Connected => trouble.clone(),
-            None if self.status.state != State::Connected => Failure::new(
+            None if self.status.state == State::Waiting => Failure::new(
                 Kind::Board,
                 "nothing is recorded: the board had not come. `vrduino list` shows what is plugged in",
             ),
